@@ -1,0 +1,92 @@
+// A graph that was checked: every name resolved, subgraphs unfolded, parameters complete, passes created. What it cannot know
+// yet are the images' sizes; those come with the plan.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "quell/image/port_type.h"
+#include "quell/plugin/pass_instance.h"
+#include "quell/plugin/registry.h"
+#include "quell/text/diagnostic.h"
+
+namespace quell {
+
+/// Something that yields an item: output `port` of a node, or a graph input.
+struct Endpoint {
+  int node = -1;  ///< index into Graph::nodes; -1 for a graph input
+  int port = 0;   ///< index of the node's output, or of the graph's input
+  int item = 0;   ///< element of an output that is an array
+  bool operator==(const Endpoint&) const = default;
+  auto operator<=>(const Endpoint&) const = default;
+};
+
+/// What stands on a delayed edge when there is no earlier frame.
+struct Initial {
+  enum class Kind { none, constant, endpoint } kind = Kind::none;
+  std::vector<double> constant;  ///< one value, or one for each plane
+  Endpoint endpoint;             ///< of the same frame
+};
+
+struct Edge {
+  Endpoint from;
+  int delay = 0;  ///< frames back; negative (ahead) only from graph inputs
+  Initial initial;
+  Position where;
+};
+
+struct Node {
+  std::string name;  ///< qualified by the subgraphs around it: "svgf.atrous0"
+  const quell_pass_desc* pass = nullptr;
+  std::shared_ptr<const PassInstance> instance;
+  std::vector<std::vector<Edge>> inputs;  ///< for each input port of the pass; empty when unconnected
+  Position where;
+};
+
+struct GraphInput {
+  std::string name;
+  PortType type = QUELL_TYPE_COLOR;
+  bool optional = false;
+  std::string doc;
+  Position where;
+};
+
+struct GraphOutput {
+  std::string name;
+  Endpoint from;
+  Position where;
+};
+
+struct Graph {
+  std::string name;
+  std::string doc;
+  std::filesystem::path file;
+  std::vector<GraphInput> inputs;
+  std::vector<Node> nodes;  ///< same-frame edges lead from earlier to later ones; ties in the order of the file
+  std::vector<GraphOutput> outputs;
+
+  /// "filter.color", or "color" for a graph input; "[1]" is added for elements of arrays.
+  std::string describe(const Endpoint& endpoint) const;
+  /// The type that the endpoint carries ("same as input X" resolved).
+  PortType type(const Endpoint& endpoint) const;
+  /// Finds "node.port", "node.port[i]" or a graph input. Throws Error(usage) with suggestions.
+  Endpoint find(std::string_view name) const;
+};
+
+/// Values from outside the file, applied in order, later ones winning: `node.param=value` (JSON, or plain text for strings).
+struct GraphOptions {
+  std::vector<std::string> set;               ///< from --set
+  std::vector<std::filesystem::path> params;  ///< from --params: JSON files, {"node.param": value} or {"node": {"param": value}}
+};
+
+/// Reads and checks a graph file. Throws one Error(usage) that tells every mistake found, with place and suggestion.
+std::shared_ptr<const Graph> load_graph(const std::filesystem::path& file, const Registry& passes,
+                                        const GraphOptions& options = {});
+/// The same for a text in memory; `source->name` stands in messages, and relative paths are taken from its folder.
+std::shared_ptr<const Graph> parse_graph(const SourceTextPtr& source, const Registry& passes, const GraphOptions& options = {});
+
+}  // namespace quell

@@ -1,0 +1,68 @@
+// How a graph runs on images of known sizes: which nodes, in what order, with what memory, and what survives a frame.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "quell/graph/graph.h"
+#include "quell/image/item.h"
+
+namespace quell {
+
+/// A node as it runs. Indices into the arrays are those of the pass's ports.
+struct PlannedNode {
+  int node = 0;                             ///< index into Graph::nodes
+  std::vector<std::vector<Shape>> outputs;  ///< shape of each item of each output
+  std::vector<int> radius;                  ///< for each input; QUELL_RADIUS_UNBOUNDED
+  std::vector<int> in_place_of;             ///< for each output: the input whose buffer it takes over; -1: a buffer of its own
+  std::size_t scratch_bytes = 0;
+  std::size_t slot_scratch_bytes = 0;
+  std::vector<Endpoint> last_uses;  ///< same-frame values that nobody needs after this node
+};
+
+/// What earlier (or later) frames of an endpoint are kept.
+struct PlannedHistory {
+  Endpoint from;
+  int frames = 0;        ///< how many frames back are needed (largest delay); 0 when only ahead
+  int frames_ahead = 0;  ///< how many frames ahead are needed
+  std::size_t bytes_per_frame = 0;
+};
+
+/// Nodes that depend on their own earlier results. Frames cannot overlap inside a loop.
+struct PlannedLoop {
+  std::vector<int> nodes;  ///< indices into Graph::nodes, in order
+  int delay = 0;           ///< smallest sum of delays around a cycle through the loop
+};
+
+struct Plan {
+  std::shared_ptr<const Graph> graph;
+  std::vector<Shape> inputs;       ///< of each graph input; present is false for an optional one that the source lacks
+  std::vector<bool> input_used;    ///< whether anything that runs reads it, in any frame
+  std::vector<PlannedNode> nodes;  ///< in order of execution; what feeds nothing, or lacks its input, is left out
+  std::vector<int> pruned;         ///< indices into Graph::nodes of what was left out
+  std::vector<int> outputs;        ///< indices into Graph::outputs of those that are computed
+  std::vector<Endpoint> dumps;     ///< inner endpoints that are handed to the sink, too
+  std::vector<PlannedHistory> histories;
+  std::vector<PlannedLoop> loops;
+  std::size_t frame_bytes = 0;  ///< largest sum of buffers alive at a time in one frame, inputs included, history not
+  std::size_t history_bytes = 0;
+  std::size_t unshared_bytes = 0;  ///< what a frame would need if no buffer were reused
+
+  /// Shape of what an endpoint carries; present is false when it is never there.
+  Shape shape(const Endpoint& endpoint) const;
+};
+
+using InputShapes = std::map<std::string, std::optional<Shape>, std::less<>>;
+
+/// Plans a graph for the inputs that a source has. Throws Error(usage) when a required input is absent, sizes do not agree, or
+/// a pass refuses its inputs; every mistake at once, at the place of the node in the file.
+Plan make_plan(std::shared_ptr<const Graph> graph, const InputShapes& inputs, const std::vector<std::string>& dumps = {});
+
+/// The plan for people: nodes in order, what each reads and writes, memory, loops.
+std::string describe(const Plan& plan);
+
+}  // namespace quell

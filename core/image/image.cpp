@@ -1,0 +1,54 @@
+#include "quell/image/image.h"
+
+#include <cassert>
+
+#include "quell/text/error.h"
+
+namespace quell {
+namespace {
+constexpr std::ptrdiff_t kLine = 64 / sizeof(float);  // elements in a cache line, which is also the widest vector
+}
+
+std::ptrdiff_t Image::row_stride(int width) {
+  const std::ptrdiff_t lines = (width + kLine - 1) / kLine;
+  return (lines + 1) * kLine;  // one line more, so that a whole vector may be loaded from the last pixel on
+}
+
+std::size_t Image::bytes_needed(PortType type, Size size) {
+  return static_cast<std::size_t>(info(type).channels) * static_cast<std::size_t>(size.height) *
+         static_cast<std::size_t>(row_stride(size.width)) * sizeof(float);
+}
+
+Image::Image(PortType type, Size size, BufferPool& pool) : type_(type), size_(size) {
+  assert(is_image(type));
+  const auto allowed = [](int side) { return side >= 1 && side <= kMaxSize; };
+  if (!allowed(size.width) || !allowed(size.height) || bytes_needed(type, size) > kMaxBytes)
+    throw Error(Fault::input, "",
+                "an image of " + std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels; sides from 1 to " +
+                    std::to_string(kMaxSize) + " and up to 1 TiB are possible");
+  buffer_ = pool.acquire(bytes_needed(type, size));
+}
+
+Image Image::as(PortType type) const {
+  assert(info(type).channels == info(type_).channels && info(type).format == info(type_).format);
+  Image other = *this;
+  other.type_ = type;
+  return other;
+}
+
+void Image::require([[maybe_unused]] quell_format format) const { assert(buffer_ && info(type_).format == format); }
+
+quell_image Image::raw() const {
+  const std::ptrdiff_t stride = row_stride(size_.width);
+  return {sizeof(quell_image),
+          static_cast<std::uint32_t>(type_),
+          static_cast<std::uint32_t>(info(type_).format),
+          static_cast<std::uint32_t>(channels()),
+          size_.width,
+          size_.height,
+          stride,
+          stride * size_.height,
+          buffer_.data()};
+}
+
+}  // namespace quell

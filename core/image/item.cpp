@@ -1,0 +1,30 @@
+#include "quell/image/item.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace quell {
+
+CameraRecord::CameraRecord(Camera camera) : camera_(std::move(camera)) {
+  for (const auto& [id, matrix] : camera_.object_to_world) {
+    ids_.push_back(id);
+    matrices_.insert(matrices_.end(), matrix.begin(), matrix.end());
+  }
+  raw_.struct_size = sizeof(raw_);
+  raw_.width = camera_.size.width;
+  raw_.height = camera_.size.height;
+  std::ranges::copy(camera_.world_to_camera, raw_.world_to_camera);
+  std::ranges::copy(camera_.world_to_screen, raw_.world_to_screen);
+  std::ranges::copy(camera_.jitter, raw_.jitter);
+  raw_.object_count = static_cast<std::uint32_t>(ids_.size());
+  raw_.object_ids = ids_.data();
+  raw_.object_to_world = matrices_.data();
+}
+
+PortType Item::type() const {
+  assert(*this);
+  if (image()) return image()->type();
+  return camera() ? QUELL_TYPE_CAMERA : QUELL_TYPE_VALUE;
+}
+
+}  // namespace quell
