@@ -35,8 +35,9 @@ class PassInstance {
   const std::vector<ParamValue>& values() const { return values_; }
   /// Throws Error(usage) with the pass's words when it cannot work with these shapes, Error(plugin) when its answer is not valid.
   void infer(quell_inference& inference) const;
-  /// The status is the pass's; its message went to host.set_error.
-  quell_status process(const quell_host& host, const quell_exec& exec) const { return desc_.process(instance_, &host, &exec); }
+  /// The status is the pass's; its message went to host.set_error. An exception that a plugin lets through, although it must not,
+  /// becomes QUELL_FAILED with a message.
+  quell_status process(const quell_host& host, const quell_exec& exec) const;
 
  private:
   const quell_pass_desc& desc_;

@@ -43,6 +43,7 @@ class Registry {
   const std::vector<std::filesystem::path>& folders() const { return folders_; }
 
  private:
+  void take(const quell_pass_desc* const* passes, std::uint32_t count, PluginReport& report);
   std::map<std::string, RegisteredPass, std::less<>> passes_;
   std::vector<PluginReport> reports_;
   std::vector<std::filesystem::path> folders_;
