@@ -26,13 +26,20 @@ struct Position {
   int column() const;
 };
 
+/// Another place that helps to understand an error; rendered after it as `file:line:column: note: message`.
+struct Note {
+  Position where;
+  std::string message;
+};
+
 /// Collects errors and renders them as `file:line:column: error: message`, the line of the text, and a caret under the place.
 class Diagnostics {
  public:
-  void error(const Position& where, std::string message);
+  void error(const Position& where, std::string message, std::vector<Note> notes = {});
   bool empty() const { return entries_.empty(); }
   std::size_t size() const { return entries_.size(); }
-  /// All errors, by place, separated by line feeds.
+  /// All errors, by place, separated by line feeds; files stand in the order of their first error, and what was said of a place
+  /// once is not repeated. A position without a source gives the message alone. From the 200th on, errors are only counted.
   std::string render() const;
   /// Throws an Error whose text is render(), when there are any.
   void throw_if_any(Fault fault = Fault::usage) const;
@@ -41,11 +48,15 @@ class Diagnostics {
   struct Entry {
     Position where;
     std::string message;
+    std::vector<Note> notes;
   };
+  std::vector<const Entry*> by_place() const;
+  static std::string render(const Entry& entry);
   std::vector<Entry> entries_;
 };
 
-/// The names nearest to a misspelt one, best first, at most three; names that are not close are left out.
+/// The names nearest to a misspelt one, best first, at most three; names that are not close are left out. Names that differ in
+/// case alone come first; else close means an edit distance (swapped neighbours count once) of at most a third of the length.
 std::vector<std::string> nearest(std::string_view misspelt, const std::vector<std::string>& names);
 /// "; did you mean 'sigma'?" for nearest(), or "" when nothing is close.
 std::string did_you_mean(std::string_view misspelt, const std::vector<std::string>& names);
