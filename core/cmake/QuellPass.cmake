@@ -18,10 +18,7 @@ function(quell_add_plugin plugin)
     PREFIX "" SUFFIX .so LINKER_LANGUAGE CXX
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${QUELL_PASSES_DIR}
     INSTALL_RPATH "$ORIGIN/../..")
-  # What is missing must show when the plugin is built, not when somebody loads it. A sanitizer's symbols come with the program.
-  if(NOT QUELL_SANITIZE)
-    target_link_options(${plugin} PRIVATE -Wl,--no-undefined)
-  endif()
+  target_link_options(${plugin} PRIVATE -Wl,--no-undefined)  # what is missing shows when it is built, not when it is loaded
   if(TARGET quell_flags)
     target_link_libraries(${plugin} PRIVATE quell_flags)
   endif()
@@ -58,6 +55,7 @@ function(quell_add_pass plugin pass)
   if(NOT arg_TEST)
     set(arg_TEST ${folder}/${pass}_test.cpp)
   endif()
+  cmake_path(ABSOLUTE_PATH arg_TEST BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
   if(BUILD_TESTING AND EXISTS ${arg_TEST})
     quell_add_pass_test(${plugin} ${pass} ${arg_TEST})
   endif()

@@ -80,9 +80,9 @@ void Registry::take(const quell_pass_desc* const* passes, std::uint32_t count, P
     if (is_new)
       report.passes.push_back(passes[i]->id);
     else if (it->second.file == report.file)
-      refuse("pass '" + it->first + "' is there twice in " + place(report.file));
+      refuse("pass '" + it->first + "' is there twice");
     else
-      refuse("pass '" + it->first + "' of " + place(report.file) + " is already provided by " + place(it->second.file) +
+      refuse("pass '" + it->first + "' is already provided by " + place(it->second.file) +
              "; remove one of the two files, or rename the pass");
   }
 }

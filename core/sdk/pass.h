@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -56,8 +57,9 @@ quell_status guard(const quell_host* host, const Body& body) noexcept {
   return QUELL_FAILED;
 }
 
-/// Turns a PassInfo and a Params into the C descriptor, and owns what that points to.
-class Descriptor {
+/// Turns a PassInfo and a Params into the C descriptor, and owns what that points to. Hidden, as registered_passes() is: two
+/// plugins may have classes of one name.
+class [[gnu::visibility("hidden")]] Descriptor {
  public:
   template <class ConcretePass, class Params>
   static Descriptor& make(const PassInfo& info) {
@@ -116,7 +118,11 @@ class Descriptor {
   }
   quell_port_desc describe(const PortInfo& port) const {
     const std::uint32_t flags = (port.optional ? QUELL_PORT_OPTIONAL : 0u) | (port.array ? QUELL_PORT_ARRAY : 0u);
-    const int same_as = port.same_as ? find_port(info_.inputs, port.same_as) : -1;
+    // A name that no input has becomes an index that none has, which the host refuses: nothing may throw while a plugin loads.
+    int same_as = port.same_as ? 0 : -1;
+    while (same_as >= 0 && same_as < static_cast<int>(inputs_.size()) &&
+           std::string_view(port.same_as) != info_.inputs[static_cast<std::size_t>(same_as)].name)
+      ++same_as;
     return {sizeof(quell_port_desc), flags, port.name, port.types, same_as, port.doc};
   }
 
@@ -134,9 +140,16 @@ class Descriptor {
   return passes;
 }
 
+/// Runs while the plugin is being loaded, when nothing may be thrown: what cannot be described becomes a null entry, which the
+/// host reports.
 template <class ConcretePass, class Params>
-bool register_pass(const PassInfo& info) {
-  registered_passes().push_back(Descriptor::make<ConcretePass, Params>(info).get());
+bool register_pass(const PassInfo& info) noexcept {
+  const quell_pass_desc* desc = nullptr;
+  try {
+    desc = Descriptor::make<ConcretePass, Params>(info).get();
+  } catch (...) {  // NOLINT: told to the host by the null
+  }
+  registered_passes().push_back(desc);
   return true;
 }
 
