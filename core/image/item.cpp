@@ -27,4 +27,11 @@ PortType Item::type() const {
   return camera() ? QUELL_TYPE_CAMERA : QUELL_TYPE_VALUE;
 }
 
+Shape shape_of(const Item& item) {
+  Shape shape{item.type(), {}, 0, true};
+  if (item.image()) shape.size = item.image()->size();
+  if (item.values()) shape.value_count = static_cast<std::uint32_t>(item.values()->size());
+  return shape;
+}
+
 }  // namespace quell

@@ -75,4 +75,7 @@ struct Shape {
   bool present = true;
 };
 
+/// The shape of an item that is there.
+Shape shape_of(const Item& item);
+
 }  // namespace quell

@@ -1,20 +1,19 @@
 // The one seam through which everything runs in parallel: oneTBB, or plain threads where a race detector must see them
-// (Debian's TBB is not instrumented).
+// (Debian's TBB is not instrumented, and suppressing its reports hides real races too).
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <memory>
 
-#include "quell/sdk/abi.h"
-
 namespace quell {
 
 /// Runs parallel loops. Thread-safe; loops from several threads share the same workers.
 class Executor {
  public:
-  virtual ~Executor() = default;
   using Chunk = std::function<void(std::int64_t chunk, std::uint32_t slot)>;
+
+  virtual ~Executor() = default;
   /// Calls body(chunk, slot) once for every chunk in [0, chunks), and returns when all are done. A call from within a body runs
   /// inline, with the caller's slot. `body` must not throw.
   virtual void run(std::int64_t chunks, const Chunk& body) = 0;
@@ -22,7 +21,17 @@ class Executor {
   virtual std::uint32_t slots() const = 0;
 };
 
-/// `threads` 0: as many as this process may use.
-std::unique_ptr<Executor> make_executor(int threads = 0);
+enum class ThreadSource { tbb, threads };
+#ifdef __SANITIZE_THREAD__
+inline constexpr ThreadSource kDefaultThreadSource = ThreadSource::threads;
+#else
+inline constexpr ThreadSource kDefaultThreadSource = ThreadSource::tbb;
+#endif
+
+/// The number of processors that this process may use.
+int available_threads();
+
+/// `threads` 0: available_threads().
+std::unique_ptr<Executor> make_executor(int threads = 0, ThreadSource source = kDefaultThreadSource);
 
 }  // namespace quell

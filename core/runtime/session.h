@@ -1,4 +1,4 @@
-// Runs a plan over frames. Frames come from a source and go to a sink, or are pushed and taken one by one.
+// Runs a graph over frames. Frames come from a source and go to a sink, or are pushed and taken one by one.
 #pragma once
 
 #include <cstdint>
@@ -18,34 +18,40 @@ namespace quell {
 struct FrameReport {
   std::int64_t frame = 0;
   bool ok = true;
-  std::string error;    ///< node and reason, when it failed
-  std::string warning;  ///< what a person should know although the frame is fine
+  std::string error;                  ///< where and why, when it failed
+  std::vector<std::string> warnings;  ///< what a person should know although the frame is fine
   double seconds = 0;
   std::vector<double> node_seconds;  ///< in the order of Plan::nodes
 };
 
 struct SessionOptions {
-  int threads = 0;                                                      ///< 0: as many as this process may use
-  std::function<void(int level, const std::string& message)> log = {};  ///< levels QUELL_LOG_*
+  int threads = 0;                      ///< 0: as many as this process may use
+  std::vector<std::string> dumps = {};  ///< inner images ("node.port") that are handed out beside the outputs
+  std::function<void(int level, const std::string& message)> log = {};  ///< levels QUELL_LOG_*; from any thread
   std::function<bool()> cancelled = {};                                 ///< asked often, from any thread
-  std::function<void(const FrameReport&)> on_frame = {};                ///< after each frame, in order
+  std::function<void(const FrameReport&)> on_frame = {};                ///< after each frame of run(), in order
 };
 
-/// Not thread-safe. History lasts as long as the session.
+/// One node after the other, each parallel inside: the reference that every other way of running must equal bit for bit.
+/// Not thread-safe. History lasts as long as the session, and starts anew when the size of the images changes.
 class Session {
  public:
-  explicit Session(Plan plan, SessionOptions options = {});
+  explicit Session(std::shared_ptr<const Graph> graph, SessionOptions options = {});
   ~Session();
+  Session(Session&&) noexcept;
 
-  /// Computes the frames in order; a frame that fails is reported, and counts as absent for those that follow. Returns the
-  /// reports; fewer than frames when cancelled.
+  /// Computes the frames in the order given. A frame that cannot be read, computed or written is reported and harms no other; its
+  /// history counts as absent for those that follow. Returns a report for each frame, or fewer when cancelled. Throws
+  /// Error(usage) when the graph cannot run on what the source has.
   std::vector<FrameReport> run(const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink);
 
-  /// In memory: the inputs of one frame by name, and its outputs. Throws Error(frame) when it fails. Inputs that look ahead
-  /// are not available here (Error(usage)).
+  /// In memory: computes one frame from its inputs by name, and returns the outputs and dumps by name. Throws Error(usage) when
+  /// the inputs do not fit the graph, Error(frame) when a pass fails, Cancelled when cancelled. Inputs that look ahead need
+  /// run().
   std::map<std::string, Item> push(std::int64_t frame, const std::map<std::string, Item>& inputs);
 
-  const Plan& plan() const;
+  /// Null until the first frame told the sizes.
+  const Plan* plan() const;
   BufferPool& pool();
 
  private:

@@ -1,0 +1,41 @@
+// Runs one node on one frame: hands its items to the pass as the C interface wants them, and gives it its memory.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "quell/image/item.h"
+#include "quell/plugin/pass_instance.h"
+#include "quell/runtime/host.h"
+
+namespace quell {
+
+/// What a node needs besides its inputs; the plan computes it with the pass's infer.
+struct NodeLayout {
+  std::vector<std::vector<Shape>> outputs;  ///< of each item of each output
+  std::vector<int> in_place_of;             ///< for each output: an input, or -1
+  std::size_t scratch_bytes = 0;
+  std::size_t slot_scratch_bytes = 0;
+};
+
+using PortItems = std::vector<std::vector<Item>>;  // items of each port
+
+/// Keeps its tables from frame to frame. One frame at a time; several runners may share a pass.
+class NodeRunner {
+ public:
+  /// `name` stands in messages.
+  NodeRunner(std::string name, const PassInstance& pass, NodeLayout layout, const HostServices& services, BufferPool& pool);
+  ~NodeRunner();
+  NodeRunner(NodeRunner&&) noexcept;
+
+  /// Computes `outputs` from `inputs`, whose items are let go. An input that nobody else holds may be overwritten by an output
+  /// planned in place. Throws Error(frame) with the pass's words when it fails, Cancelled when it was cancelled.
+  void run(std::int64_t frame, PortItems& inputs, PortItems& outputs);
+
+ private:
+  struct Tables;
+  std::unique_ptr<Tables> tables_;
+};
+
+}  // namespace quell

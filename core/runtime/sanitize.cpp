@@ -1,0 +1,47 @@
+#include "quell/runtime/sanitize.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cstring>
+
+namespace quell {
+namespace {
+
+// All ones in the exponent: NaN or infinity. Bits are compared so that no compiler option can remove the test.
+bool is_finite(float value) { return (std::bit_cast<std::uint32_t>(value) & 0x7f800000u) != 0x7f800000u; }
+
+std::int64_t count_non_finite(const FloatImage& image, Executor& executor) {
+  std::atomic<std::int64_t> total{0};
+  executor.run(image.height, [&](std::int64_t y, std::uint32_t) {
+    std::int64_t found = 0;
+    for (int c = 0; c < image.channels; ++c) {
+      const float* row = image.row(static_cast<int>(y), c);
+      for (int x = 0; x < image.width; ++x) found += is_finite(row[x]) ? 0 : 1;
+    }
+    if (found > 0) total += found;
+  });
+  return total;
+}
+
+}  // namespace
+
+std::int64_t sanitize(Item& item, Executor& executor, BufferPool& pool) {
+  const Image* image = item.image();
+  if (!image || info(image->type()).format != QUELL_FORMAT_F32) return 0;
+  const std::int64_t count = count_non_finite(image->floats(), executor);
+  if (count == 0) return 0;
+
+  Image clean(image->type(), image->size(), pool);
+  std::memcpy(clean.writable_floats().data, image->floats().data, image->bytes());
+  const FloatOutput out = clean.writable_floats();
+  const float replacement = image->type() == QUELL_TYPE_DEPTH ? QUELL_NO_SURFACE_DEPTH : 0.0F;
+  for (int c = 0; c < out.channels; ++c)
+    for (int y = 0; y < out.height; ++y)
+      std::replace_if(
+          out.row(y, c), out.row(y, c) + out.width, [](float v) { return !is_finite(v); }, replacement);
+  item = clean;
+  return count;
+}
+
+}  // namespace quell
