@@ -174,7 +174,8 @@ typedef struct quell_change {
 
 typedef quell_status (*quell_chunk_fn)(void* context, int64_t chunk, int64_t begin, int64_t end, uint32_t slot);
 
-typedef struct quell_host {
+typedef struct quell_host quell_host;
+struct quell_host {
   uint32_t struct_size;
   uint32_t abi;   // QUELL_ABI_VERSION of the host
   void* context;  // the host's own
@@ -185,7 +186,7 @@ typedef struct quell_host {
   void (*log)(const quell_host*, int level, const char* message);
   int (*cancelled)(const quell_host*);                        // non-zero: return QUELL_CANCELLED soon
   void (*set_error)(const quell_host*, const char* message);  // says why QUELL_FAILED is about to be returned
-} quell_host;
+};
 
 // -------------------------------------------------------------------------------------------------------------- a pass
 
