@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <new>
 #include <utility>
 
@@ -15,6 +16,7 @@ struct BufferPool::State {
   std::mutex mutex;
   std::map<std::size_t, std::vector<Buffer::Block*>> idle;
   Usage usage;
+  bool poison = false;
   bool open = true;  // false once the pool is gone: nothing is kept any more
 
   void take_back(Buffer::Block* block);
@@ -101,6 +103,7 @@ Buffer BufferPool::acquire(std::size_t bytes) {
     usage.peak = std::max(usage.peak, usage.in_use + usage.idle);
   }
   block->state = state_;
+  if (state_->poison) std::memset(block->data, 0xff, bytes);  // all bits set is a NaN
   return Buffer(block);
 }
 
@@ -108,6 +111,8 @@ BufferPool::Usage BufferPool::usage() const {
   const std::scoped_lock lock(state_->mutex);
   return state_->usage;
 }
+
+void BufferPool::poison(bool on) { state_->poison = on; }
 
 void BufferPool::trim() {
   const std::scoped_lock lock(state_->mutex);

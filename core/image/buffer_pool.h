@@ -54,6 +54,8 @@ class BufferPool {
   Usage usage() const;
   /// Gives idle blocks back to the system.
   void trim();
+  /// Fills every block that is handed out with NaN, so that a test sees when unspecified content is used.
+  void poison(bool on);
 
  private:
   friend class Buffer;

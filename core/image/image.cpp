@@ -19,14 +19,16 @@ std::size_t Image::bytes_needed(PortType type, Size size) {
          static_cast<std::size_t>(row_stride(size.width)) * sizeof(float);
 }
 
-Image::Image(PortType type, Size size, BufferPool& pool) : type_(type), size_(size) {
+Image::Image(PortType type, Size size, BufferPool& pool, int spare_lines) : type_(type), size_(size) {
   assert(is_image(type));
   const auto allowed = [](int side) { return side >= 1 && side <= kMaxSize; };
   if (!allowed(size.width) || !allowed(size.height) || bytes_needed(type, size) > kMaxBytes)
     throw Error(Fault::input, "",
                 "an image of " + std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels; sides from 1 to " +
                     std::to_string(kMaxSize) + " and up to 1 TiB are possible");
-  buffer_ = pool.acquire(bytes_needed(type, size));
+  row_stride_ = row_stride(size.width) + spare_lines * kLine;
+  plane_stride_ = row_stride_ * size.height + spare_lines * kLine;
+  buffer_ = pool.acquire(static_cast<std::size_t>(plane_stride_) * static_cast<std::size_t>(channels()) * sizeof(float));
 }
 
 Image Image::as(PortType type) const {
@@ -39,15 +41,14 @@ Image Image::as(PortType type) const {
 void Image::require([[maybe_unused]] quell_format format) const { assert(buffer_ && info(type_).format == format); }
 
 quell_image Image::raw() const {
-  const std::ptrdiff_t stride = row_stride(size_.width);
   return {sizeof(quell_image),
           static_cast<std::uint32_t>(type_),
           static_cast<std::uint32_t>(info(type_).format),
           static_cast<std::uint32_t>(channels()),
           size_.width,
           size_.height,
-          stride,
-          stride * size_.height,
+          row_stride_,
+          plane_stride_,
           buffer_.data()};
 }
 

@@ -18,7 +18,8 @@ class Image {
 
   Image() = default;
   /// Pixels are unspecified. Throws Error when a size is not within 1..kMaxSize, std::bad_alloc when memory runs out.
-  Image(PortType type, Size size, BufferPool& pool);
+  /// `spare_lines` cache lines are added to each row and plane: tests show with it that a pass heeds the strides.
+  Image(PortType type, Size size, BufferPool& pool, int spare_lines = 0);
 
   explicit operator bool() const { return static_cast<bool>(buffer_); }
   PortType type() const { return type_; }
@@ -47,11 +48,11 @@ class Image {
   template <class Value>
   ImageView<Value> view(quell_format format) const {
     require(format);
-    const std::ptrdiff_t stride = row_stride(size_.width);
-    return {size_.width, size_.height, channels(), stride, stride * size_.height, static_cast<Value*>(buffer_.data())};
+    return {size_.width, size_.height, channels(), row_stride_, plane_stride_, static_cast<Value*>(buffer_.data())};
   }
   PortType type_ = QUELL_TYPE_COLOR;
   Size size_;
+  std::ptrdiff_t row_stride_ = 0, plane_stride_ = 0;
   Buffer buffer_;
 };
 

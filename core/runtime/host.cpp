@@ -32,6 +32,7 @@ std::string Host::take_error() {
 quell_status Host::parallel_for(const quell_host* host, std::int64_t begin, std::int64_t end, std::int64_t grain,
                                 quell_chunk_fn fn, void* context) {
   if (end <= begin) return QUELL_OK;
+  if (self(host).services_.force_grain > 0) grain = self(host).services_.force_grain;
   grain = std::max<std::int64_t>(grain, 1);
   const std::int64_t chunks = (end - begin - 1) / grain + 1;
   std::mutex mutex;

@@ -15,6 +15,7 @@ struct HostServices {
   Executor* executor = nullptr;
   std::function<void(int level, const std::string& message)> log;  ///< may be empty
   std::function<bool()> cancelled;                                 ///< may be empty
+  std::int64_t force_grain = 0;  ///< not 0: overrides what passes ask for, to show that results do not depend on it
 };
 
 /// The table for one caller of passes. set_error's message is kept until it is taken.

@@ -90,7 +90,8 @@ std::vector<FrameReport> Session::run(const std::vector<std::int64_t>& frames, F
   std::vector<FrameReport> reports;
   for (const std::int64_t frame : frames) {
     if (s.cancelled()) break;
-    FrameReport report{.frame = frame};
+    FrameReport report;
+    report.frame = frame;
     const auto start = std::chrono::steady_clock::now();
     try {
       s.run_frame(report, reader, offered, sink);
