@@ -1,0 +1,79 @@
+// A sequence of image files and cameras as the source of a graph's inputs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "quell/image/stream.h"
+#include "quell/sequence/frame_range.h"
+
+namespace quell {
+
+struct SequenceOptions {
+  std::vector<std::string> in;       ///< from --in: "color=beauty_%d.exr", "id=ID_%d.exr:background=-1"; later ones win
+  std::optional<FrameRange> frames;  ///< from --frames
+};
+
+/// One input as it was found.
+struct InputFiles {
+  std::string input;
+  std::string pattern;               ///< with its folder, as FilePattern writes it
+  std::optional<PortType> type;      ///< nothing: not stated, and the name tells nothing
+  std::vector<std::int64_t> frames;  ///< on disk, ascending
+};
+
+/// A file that a frame needs and the disk lacks.
+struct MissingFile {
+  std::string input;
+  std::int64_t frame = 0;
+  std::filesystem::path file;
+};
+
+/// Reads frames from files. Each input is known by its name and converted to the meaning of its port type: the type that
+/// expect() or the sequence.json states, else the type whose name the input has (`reference`, `emission` and `noisy` are color).
+/// How files are named and converted is written in core/sequence/README.md.
+class Sequence final : public FrameSource {
+ public:
+  /// `path` is a folder whose file names are recognised (or that holds a sequence.json), a sequence.json, or empty when
+  /// options.in names everything. Throws Error(input) for what is missing, unreadable, ambiguous or wrong in a sequence.json
+  /// (all mistakes at once), Error(usage) for a malformed option.
+  static std::unique_ptr<Sequence> open(const std::filesystem::path& path, const SequenceOptions& options = {});
+  ~Sequence() override;
+
+  /// Tells the type that the graph wants of an input. Call before shape() and read(). Throws Error(input) when the sequence.json
+  /// states another type; an input that the sequence does not have is ignored.
+  void expect(std::string_view input, PortType type);
+
+  /// The frames to run when these inputs are needed: those asked for (--frames, else "frames" of the sequence.json), else those
+  /// for which every input has a file. Ascending. Throws Error(input) when the sequence lacks one of the inputs.
+  std::vector<std::int64_t> frames(const std::vector<std::string>& required) const;
+  /// The files that are missing among the frames asked for, or, when none were asked for, among all frames that any of the
+  /// required inputs has. By frame, then by input.
+  std::vector<MissingFile> missing(const std::vector<std::string>& required) const;
+  /// Every input, by name.
+  std::vector<InputFiles> inputs() const;
+  /// Digits of the frame numbers in file names (of `color` when there is one), for files to be written; 4 when they are not
+  /// padded.
+  int padding() const;
+  /// What was recognised, a line each, for printing.
+  std::string describe() const;
+  /// What a person should know: padding that differs from the disk's, images that cover only part of their frame. Grows while
+  /// reading.
+  std::vector<std::string> warnings() const;
+
+  std::optional<Shape> shape(std::string_view input) override;
+  /// Pixels that are not finite are passed on as they are, except depths (see convert.h).
+  Item read(std::string_view input, std::int64_t frame, BufferPool& pool) override;
+
+ private:
+  struct State;
+  explicit Sequence(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace quell
