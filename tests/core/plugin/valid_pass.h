@@ -43,7 +43,10 @@ struct ValidPass {
             3,
             changes.data(),
             1,
-            [](const quell_host*, const quell_param_value*, void** instance) { return *instance = &instance, QUELL_OK; },
+            [](const quell_host*, const quell_param_value*, void** instance) {
+              static int something;
+              return *instance = &something, QUELL_OK;
+            },
             [](void*) {},
             [](const void*, const quell_host*, quell_inference*) { return QUELL_OK; },
             [](const void*, const quell_host*, const quell_exec*) { return QUELL_OK; }};
