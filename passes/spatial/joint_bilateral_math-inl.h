@@ -1,0 +1,98 @@
+// Vectors of pixels, and the functions of the joint bilateral filter's weights. Included once for every vector unit.
+// Formulas and error bounds: relative errors of the polynomials, to which a few roundings of float (6e-8 each) come.
+// Coefficients: own Remez fits. All of it breaks under -ffast-math.
+#if defined(QUELL_JOINT_BILATERAL_MATH) == defined(HWY_TARGET_TOGGLE)
+#ifdef QUELL_JOINT_BILATERAL_MATH
+#undef QUELL_JOINT_BILATERAL_MATH
+#else
+#define QUELL_JOINT_BILATERAL_MATH
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+
+HWY_BEFORE_NAMESPACE();
+namespace quell::joint_bilateral::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr int kMaxLanes = 16;  // so that a whole vector may be loaded past the end of a row
+using D = hn::CappedTag<float, kMaxLanes>;
+using V = hn::Vec<D>;
+
+struct V3 {
+  V x, y, z;
+};
+
+HWY_INLINE V set(float value) { return hn::Set(D(), value); }
+HWY_INLINE V zero() { return hn::Zero(D()); }
+HWY_INLINE int lanes() { return static_cast<int>(hn::Lanes(D())); }
+
+// Three planes of pixels from `first` on.
+HWY_INLINE V3 load(const float* first, std::ptrdiff_t plane_stride) {
+  const D d;
+  return {hn::LoadU(d, first), hn::LoadU(d, first + plane_stride), hn::LoadU(d, first + 2 * plane_stride)};
+}
+// Stores the first `count` lanes, or all when there are fewer; what lies behind them stays untouched.
+HWY_INLINE void store(V v, int count, float* to) {
+  const D d;
+  if (count >= lanes()) return hn::StoreU(v, d, to);
+  HWY_ALIGN float buffer[kMaxLanes];
+  hn::Store(v, d, buffer);
+  std::copy_n(buffer, count, to);
+}
+
+HWY_INLINE V3 add(V3 a, V3 b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
+HWY_INLINE V3 sub(V3 a, V3 b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
+HWY_INLINE V3 mul(V a, V3 b) { return {hn::Mul(a, b.x), hn::Mul(a, b.y), hn::Mul(a, b.z)}; }
+HWY_INLINE V3 mul_add(V a, V3 b, V3 c) { return {hn::MulAdd(a, b.x, c.x), hn::MulAdd(a, b.y, c.y), hn::MulAdd(a, b.z, c.z)}; }
+HWY_INLINE V dot(V3 a, V3 b) { return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::Mul(a.x, b.x))); }
+HWY_INLINE V dot_add(V3 a, V3 b, V c) { return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::MulAdd(a.x, b.x, c))); }
+
+// 2^-(gain e) for e >= 0; error 3.6e-6, exactly 1 at 0, exactly 0 where gain e > 126.5. `limit` is 127 / gain.
+// The fit is of 2^f on [-1/2, 1/2], the constant 1 held.
+HWY_INLINE V exp2_negative(V e, V gain, V limit) {
+  const D d;
+  const hn::RebindToUnsigned<D> du;
+  const V round = set(0x1.8p23F + 127.0F);  // the last bits of a sum with it are the rounded integer, biased as an exponent
+  e = hn::Min(e, limit);
+  const V n = hn::NegMulAdd(gain, e, round);
+  const V f = hn::NegMulAdd(gain, e, hn::Sub(round, n));
+  V p = set(9.782912553e-3F);
+  p = hn::MulAdd(p, f, set(5.597688363e-2F));
+  p = hn::MulAdd(p, f, set(2.402071108e-1F));
+  p = hn::MulAdd(p, f, set(6.931136044e-1F));
+  p = hn::MulAdd(p, f, set(1.0F));
+  return hn::Mul(p, hn::BitCast(d, hn::ShiftLeft<23>(hn::BitCast(du, n))));
+}
+
+// The square of the angle between two normals is taken from chord = |n - n'|^2 = 2 - 2 n.n', which does not cancel where they are
+// close: acos(n.n')^2 = chord (1 + chord / 12 + chord^2 / 90 + ...).
+
+// factor acos(n.n')^2 / chord, for n.n' >= 1/2; error 4.0e-6 on chords up to 1. For longer ones it grows on.
+HWY_INLINE V angle_ratio_narrow(V chord, V factor) {
+  V p = hn::Mul(factor, set(2.643988578e-3F));
+  p = hn::MulAdd(p, chord, hn::Mul(factor, set(1.052100582e-2F)));
+  p = hn::MulAdd(p, chord, hn::Mul(factor, set(8.345733023e-2F)));
+  return hn::MulAdd(p, chord, hn::Mul(factor, set(9.999959988e-1F)));
+}
+
+// acos(n.n')^2 for any n.n'; error 2.1e-6. The fit is for chords up to 2; acos(-x) = pi - acos(x) gives the others.
+HWY_INLINE V squared_angle_wide(V chord) {
+  const V opposite_chord = hn::Max(hn::Sub(set(4.0F), chord), zero());
+  const V x = hn::Min(chord, opposite_chord);
+  V p = set(2.677239314e-4F);
+  p = hn::MulAdd(p, x, set(-2.997667832e-4F));
+  p = hn::MulAdd(p, x, set(2.524761743e-3F));
+  p = hn::MulAdd(p, x, set(1.073130883e-2F));
+  p = hn::MulAdd(p, x, set(8.340292365e-2F));
+  p = hn::MulAdd(p, x, set(9.999979619e-1F));
+  p = hn::Mul(p, x);
+  const V rest = hn::Sub(set(3.14159265F), hn::Sqrt(p));
+  return hn::IfThenElse(hn::Gt(chord, opposite_chord), hn::Mul(rest, rest), p);
+}
+
+}  // namespace quell::joint_bilateral::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
