@@ -1,0 +1,94 @@
+#include "tests/layering/layering.h"
+
+#include <algorithm>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace quell::test {
+namespace {
+
+using Names = std::set<std::string, std::less<>>;
+
+// What each box of core/ may include besides itself. A pass is a box of its own that sees the SDK alone.
+const std::map<std::string, Names, std::less<>> kMayInclude = {
+    {"core/sdk", {}},
+    {"core/text", {"sdk"}},
+    {"core/image", {"sdk", "text"}},
+    {"core/plugin", {"sdk", "text", "image"}},
+    {"core/graph", {"sdk", "text", "image", "plugin"}},
+    {"core/runtime", {"sdk", "text", "image", "plugin", "graph"}},
+    {"core/sequence", {"sdk", "text", "image"}},
+    {"core/metrics", {"sdk", "text", "image"}},
+    {"core/testing", {"sdk", "text", "image", "plugin", "graph", "runtime"}},
+    {"passes", {"sdk"}},
+    {"apps", {"sdk", "text", "image", "plugin", "graph", "runtime", "sequence", "metrics"}},
+};
+
+// Third-party headers by the first part of their path, and where they may appear.
+const std::map<std::string, Names, std::less<>> kThirdParty = {
+    {"nlohmann", {"core/text"}}, {"OpenImageIO", {"core/sequence"}},
+    {"tbb", {"core/runtime"}},   {"oneapi", {"core/runtime"}},
+    {"OpenColorIO", {"passes"}}, {"hwy", {"passes"}},
+    {"spdlog", {"apps"}},        {"CLI", {"apps"}},
+    {"gtest", {"core/testing"}}, {"gmock", {"core/testing"}},
+};
+
+// The operating system's headers. The SDK and the passes do without.
+const Names kSystem = {"dlfcn.h",  "elf.h",       "fcntl.h",        "link.h",     "poll.h",      "sched.h",   "signal.h",
+                       "unistd.h", "sys/ioctl.h", "sys/resource.h", "sys/stat.h", "sys/types.h", "sys/wait.h"};
+const Names kCHeaders = {"stddef.h", "stdint.h"};  // abi.h is C
+
+/// "core/graph" for core/graph/plan.cpp, "passes" and "apps" for all that lies below these.
+std::string box_of(const std::string& file) {
+  const std::size_t first = file.find('/');
+  if (file.substr(0, first) != "core") return file.substr(0, first);
+  return file.substr(0, file.find('/', first + 1));
+}
+
+std::string fault_in_quoted(const std::string& file, const std::string& box, const std::string& path) {
+  const Names& allowed = kMayInclude.at(box);
+  if (path.find("..") != std::string::npos) return "paths go down from the root or stay in their folder, never up";
+  if (path.find('/') == std::string::npos) return {};  // a neighbour
+  if (path.rfind("quell/", 0) == 0) {
+    const std::string other = path.substr(6, path.find('/', 6) - 6);
+    if (allowed.count(other) || box == "core/" + other) return {};
+    return box + " may not include core/" + other;
+  }
+  const std::string folder = file.substr(0, file.rfind('/') + 1);
+  const std::string own = box == "apps" ? "apps/" : folder;
+  return path.rfind(own, 0) == 0 ? "" : box + " includes only \"quell/...\" and its own folder";
+}
+
+std::string fault_in_angle(const std::string& box, const std::string& path) {
+  const bool is_standard = path.find_first_of("/.") == std::string::npos || kCHeaders.count(path);
+  if (is_standard) return {};
+  if (kSystem.count(path))
+    return box == "core/sdk" || box == "passes" ? box + " may not include headers of the operating system" : "";
+  const auto library = kThirdParty.find(path.substr(0, path.find('/')));
+  if (library == kThirdParty.end()) return "this header is not known; third-party headers are listed in tests/layering";
+  if (library->second.count(box)) return {};
+  return library->first + " is visible in " + *library->second.begin() + " only";
+}
+
+}  // namespace
+
+std::vector<std::string> find_bad_includes(const std::string& file, std::string_view text) {
+  static const std::regex kInclude(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
+  const std::string box = box_of(file);
+  if (!kMayInclude.count(box)) return {file + ":1: the folder " + box + " has no place in the layering"};
+  std::vector<std::string> faults;
+  std::istringstream lines{std::string(text)};
+  std::smatch match;
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    if (!std::regex_match(line, match, kInclude)) continue;
+    const std::string fault = match[1] == "<" ? fault_in_angle(box, match[2]) : fault_in_quoted(file, box, match[2]);
+    if (!fault.empty()) faults.push_back(file + ":" + std::to_string(number) + ": " + match.str() + ": " + fault);
+  }
+  return faults;
+}
+
+}  // namespace quell::test
