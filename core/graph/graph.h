@@ -43,7 +43,8 @@ struct Node {
   std::string name;  ///< qualified by the subgraphs around it: "svgf.atrous0"
   const quell_pass_desc* pass = nullptr;
   std::shared_ptr<const PassInstance> instance;
-  std::vector<std::vector<Edge>> inputs;  ///< for each input port of the pass; empty when unconnected
+  std::vector<std::vector<Edge>> inputs;            ///< for each input port of the pass; empty when unconnected
+  std::vector<std::vector<PortType>> output_types;  ///< for each output, of each item ("same as input X" resolved)
   Position where;
 };
 
@@ -68,19 +69,23 @@ struct Graph {
   std::vector<GraphInput> inputs;
   std::vector<Node> nodes;  ///< same-frame edges lead from earlier to later ones; ties in the order of the file
   std::vector<GraphOutput> outputs;
+  std::vector<GraphOutput> subgraph_outputs;  ///< other names for some endpoints: "svgf.color"
 
   /// "filter.color", or "color" for a graph input; "[1]" is added for elements of arrays.
   std::string describe(const Endpoint& endpoint) const;
   /// The type that the endpoint carries ("same as input X" resolved).
   PortType type(const Endpoint& endpoint) const;
-  /// Finds "node.port", "node.port[i]" or a graph input. Throws Error(usage) with suggestions.
-  Endpoint find(std::string_view name) const;
+  /// Finds "node.port", "node.port[i]", "subgraph.output" or a graph input. Throws Error(usage) with suggestions.
+  Endpoint find(std::string_view wanted) const;
 };
 
-/// Values from outside the file, applied in order, later ones winning: `node.param=value` (JSON, or plain text for strings).
+/// Values from outside the file, later ones winning: first the files, then the single settings. Nodes of subgraphs have qualified
+/// names ("svgf.atrous0.phi_color"); a parameter of the graph itself stands without a node.
 struct GraphOptions {
-  std::vector<std::string> set;               ///< from --set
-  std::vector<std::filesystem::path> params;  ///< from --params: JSON files, {"node.param": value} or {"node": {"param": value}}
+  /// From --set: `node.param=value`, the value as JSON, or plain text. Relative paths are taken from the current folder.
+  std::vector<std::string> set;
+  /// From --params: JSON files, {"node.param": value} or {"node": {"param": value}}. Relative paths are taken from their folder.
+  std::vector<std::filesystem::path> params;
 };
 
 /// Reads and checks a graph file. Throws one Error(usage) that tells every mistake found, with place and suggestion.

@@ -1,0 +1,139 @@
+#include "quell/graph/settings.h"
+
+#include "quell/graph/fields.h"
+#include "quell/graph/versions.h"
+
+namespace quell::detail {
+namespace {
+
+std::vector<std::string> own_params(const Scope& scope) {
+  std::vector<std::string> names;
+  for (const WrittenParam& param : scope.document->params) names.push_back(param.name.text);
+  return names;
+}
+
+std::uint32_t version_of(const Leaf& leaf) { return leaf.written->version.value_or(leaf.pass->version); }
+
+}  // namespace
+
+void Settings::apply_files() {
+  for (Leaf& leaf : graph_.leaves)
+    if (leaf.pass && leaf.written->version) apply_former_defaults(leaf);
+  apply_files(graph_.root);
+}
+
+void Settings::apply_files(const Scope& scope) {
+  for (const WrittenNode& node : scope.document->nodes) {
+    const Child& child = scope.children.at(node.name.text);
+    if (child.scope) apply_files(*child.scope);
+  }
+  notes_ = scope.included_from();
+  for (const WrittenNode& node : scope.document->nodes) apply_node_params(scope, node);
+  for (const WrittenParam& param : scope.document->params) {
+    const std::vector<Slot> slots = find_own(scope, param.name, param.name.text);
+    if (param.value) assign(slots, {param.name, *param.value, {}, scope.document->folder()}, &scope);
+  }
+  notes_.clear();
+}
+
+void Settings::apply_former_defaults(Leaf& leaf) {
+  for (const FormerDefault& former : former_defaults(*leaf.pass, version_of(leaf))) {
+    const quell_param_desc& desc = leaf.param(former.param);
+    Json value = to_json_value(*former.value, leaf.written->version_where);
+    if (desc.type == QUELL_PARAM_ENUM)
+      for (Json& element : value.elements)
+        if (element.kind == Json::Kind::integer && element.integer >= 0 && element.integer < std::int64_t{desc.enum_count})
+          element.kind = Json::Kind::string, element.string = desc.enum_values[element.integer];
+    if (!desc.is_array && value.elements.size() == 1) value = Json(value.elements[0]);
+    const ValueContext context{leaf.name + "." + desc.name, {}, leaf.scope->included_from()};
+    leaf.params[former.param].value = to_param(desc, value, context, errors_);
+  }
+}
+
+void Settings::apply_node_params(const Scope& scope, const WrittenNode& node) {
+  for (const WrittenValue& param : node.params)
+    assign(find_in(scope, node, param.name, param.name.text), {param.name, param.value, {}, scope.document->folder()}, &scope);
+}
+
+void Settings::apply(const Setting& setting) {
+  const bool is_own = setting.target.text.find('.') == std::string::npos;
+  const std::vector<Slot> slots = is_own ? find_own(graph_.root, setting.target, setting.target.text)
+                                         : find(graph_.root, setting.target, setting.target.text);
+  assign(slots, setting, nullptr);
+}
+
+// A parameter of the graph that the scope stands for.
+std::vector<Settings::Slot> Settings::find_own(const Scope& scope, const Text& target, std::string_view name) {
+  for (const WrittenParam& param : scope.document->params) {
+    if (param.name.text != name) continue;
+    std::vector<Slot> slots;
+    for (const Text& inner : param.sets)
+      for (const Slot& slot : find(scope, inner, inner.text)) slots.push_back(slot);
+    return slots;
+  }
+  const std::string whose = scope.parent ? "the graph '" + scope.prefix.substr(0, scope.prefix.size() - 1) + "'" : "the graph";
+  const std::string others = suggest(name, own_params(scope), "; it has none");
+  const std::string hint = scope.parent ? "" : "; a parameter of a node is written 'node.param'";
+  errors_.error(target.where, whose + " has no parameter '" + std::string(name) + "'" + others + hint, notes_);
+  return {};
+}
+
+// "node.param" in a scope, `path` being what is left of the target.
+std::vector<Settings::Slot> Settings::find(const Scope& scope, const Text& target, std::string_view path) {
+  const std::size_t dot = path.find('.');
+  const std::string_view name = path.substr(0, dot);
+  if (dot == std::string_view::npos) {
+    errors_.error(target.where, "'" + target.text + "' names no parameter; expected 'node.param'", notes_);
+    return {};
+  }
+  const WrittenNode* node = scope.find_node(name);
+  if (!node) {
+    errors_.error(target.where, "there is no node '" + scope.prefix + std::string(name) + "'" + suggest(name, scope.node_names()),
+                  notes_);
+    return {};
+  }
+  return find_in(scope, *node, target, path.substr(dot + 1));
+}
+
+// What `rest` names in a node: a parameter of its pass; a parameter or node of its graph.
+std::vector<Settings::Slot> Settings::find_in(const Scope& scope, const WrittenNode& node, const Text& target,
+                                              std::string_view rest) {
+  const Child& child = scope.children.at(node.name.text);
+  if (child.scope)
+    return rest.find('.') == std::string_view::npos ? find_own(*child.scope, target, rest) : find(*child.scope, target, rest);
+  if (child.leaf < 0) return {};
+  Leaf& leaf = graph_.leaves[static_cast<std::size_t>(child.leaf)];
+  return leaf.pass ? find_in_leaf(leaf, target, rest) : std::vector<Slot>();
+}
+
+std::vector<Settings::Slot> Settings::find_in_leaf(Leaf& leaf, const Text& target, std::string_view name) {
+  if (const std::optional<std::uint32_t> param = find_param(*leaf.pass, version_of(leaf), name)) return {{&leaf, *param}};
+  errors_.error(target.where,
+                "the pass '" + std::string(leaf.pass->id) + "' has no parameter '" + std::string(name) + "'" +
+                    suggest_param(*leaf.pass, name),
+                notes_);
+  leaf.params_are_broken = true;
+  return {};
+}
+
+void Settings::assign(const std::vector<Slot>& slots, const Setting& setting, const Scope* by) {
+  for (const auto& [leaf, index] : slots) {
+    const quell_param_desc& desc = leaf->param(index);
+    SetParam& param = leaf->params[index];
+    const std::string label = leaf->name + "." + desc.name;
+    if (by && param.set_in == by) {
+      errors_.error(
+          setting.target.where,
+          "'" + label + "' is set twice, here and in line " + std::to_string(param.where.line()) + "; expected one of them",
+          notes_);
+      continue;
+    }
+    const bool is_text = desc.type == QUELL_PARAM_STRING || desc.type == QUELL_PARAM_PATH || desc.type == QUELL_PARAM_ENUM;
+    const Json& value = setting.plain && is_text && !desc.is_array ? *setting.plain : setting.value;
+    param.value = to_param(desc, value, {label, setting.folder, notes_}, errors_);
+    param.set_in = by, param.where = setting.target.where;
+    leaf->params_are_broken = leaf->params_are_broken || !param.value;
+  }
+}
+
+}  // namespace quell::detail

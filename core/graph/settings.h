@@ -1,0 +1,46 @@
+// Every parameter of every node gets its value: the pass's default, the node's "params", the graphs' parameters, and last what
+// comes from outside. Private to this box.
+#pragma once
+
+#include "quell/graph/parameters.h"
+#include "quell/graph/scope.h"
+
+namespace quell::detail {
+
+/// A value for "node.param", "subgraph.param", "subgraph.node.param" or, from outside, a parameter of the graph itself.
+struct Setting {
+  Text target;
+  Json value;
+  std::optional<Json> plain;     ///< the same as text, for parameters that are text
+  std::filesystem::path folder;  ///< relative paths are taken from it
+};
+
+class Settings {
+ public:
+  Settings(Unfolded& graph, Diagnostics& errors) : graph_(graph), errors_(errors) {}
+
+  /// All that the files say, inner graphs first, so that outer ones win.
+  void apply_files();
+  /// A setting from outside.
+  void apply(const Setting& setting);
+
+ private:
+  struct Slot {
+    Leaf* leaf;
+    std::uint32_t param;
+  };
+  void apply_files(const Scope& scope);
+  void apply_former_defaults(Leaf& leaf);
+  void apply_node_params(const Scope& scope, const WrittenNode& node);
+  std::vector<Slot> find(const Scope& scope, const Text& target, std::string_view path);
+  std::vector<Slot> find_own(const Scope& scope, const Text& target, std::string_view name);
+  std::vector<Slot> find_in(const Scope& scope, const WrittenNode& node, const Text& target, std::string_view rest);
+  std::vector<Slot> find_in_leaf(Leaf& leaf, const Text& target, std::string_view name);
+  void assign(const std::vector<Slot>& slots, const Setting& setting, const Scope* by);
+
+  Unfolded& graph_;
+  Diagnostics& errors_;
+  std::vector<Note> notes_;  // of the scope whose settings are being applied
+};
+
+}  // namespace quell::detail
