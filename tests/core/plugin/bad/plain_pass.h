@@ -9,21 +9,21 @@
 static const quell_port_desc plain_input = {sizeof(quell_port_desc), 0, "color", QUELL_TYPE_BIT(QUELL_TYPE_COLOR), -1, "in"};
 static const quell_port_desc plain_output = {sizeof(quell_port_desc), 0, "color", QUELL_TYPE_BIT(QUELL_TYPE_COLOR), -1, "out"};
 
-static quell_status plain_create(const quell_host* host, const quell_param_value* params, void** instance) {
+static inline quell_status plain_create(const quell_host* host, const quell_param_value* params, void** instance) {
   static int something;
   (void)host, (void)params;
   *instance = &something;
   return QUELL_OK;
 }
 
-static void plain_destroy(void* instance) { (void)instance; }
+static inline void plain_destroy(void* instance) { (void)instance; }
 
-static quell_status plain_infer(const void* instance, const quell_host* host, quell_inference* inference) {
+static inline quell_status plain_infer(const void* instance, const quell_host* host, quell_inference* inference) {
   (void)instance, (void)host, (void)inference;
   return QUELL_OK;
 }
 
-static quell_status plain_process(const void* instance, const quell_host* host, const quell_exec* exec) {
+static inline quell_status plain_process(const void* instance, const quell_host* host, const quell_exec* exec) {
   const quell_image* from = QUELL_AT(quell_port, exec->inputs, 0)->items->image;
   const quell_image* to = QUELL_AT(quell_port, exec->outputs, 0)->items->image;
   (void)instance, (void)host;
