@@ -1,0 +1,68 @@
+#include "arguments.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+
+namespace quell::app {
+
+CLI::Option* add_repeatable(CLI::App& app, const char* name, std::vector<std::string>& values, const char* value_name,
+                            const char* help) {
+  return app.add_option(name, values, help)->type_name(value_name)->allow_extra_args(false);
+}
+
+CLI::Option* add_text(CLI::App& app, const char* name, std::string& value, const char* value_name, const char* help) {
+  return app.add_option(name, value, help)->type_name(value_name);
+}
+
+void add_options(CLI::App& app, VerbosityArguments& arguments) {
+  app.add_flag("-q,--quiet", arguments.quiet, "Say nothing but warnings and errors.")->group(kOtherGroup);
+  app.add_flag("-v,--verbose", arguments.verbose, "Say more: what passes tell for debugging, and where the time goes.")
+      ->group(kOtherGroup);
+}
+
+void add_options(CLI::App& app, PluginArguments& arguments) {
+  app.add_option("--plugin-path", arguments.plugin_path,
+                 "A folder of plugins, or one plugin; repeatable. Looked at before QUELL_PLUGIN_PATH and the built-in passes.")
+      ->type_name("PATH")
+      ->allow_extra_args(false)
+      ->group(kGraphGroup);
+}
+
+void add_options(CLI::App& app, GraphArguments& arguments) {
+  app.add_option("GRAPH", arguments.graph, "A graph file, or the bare name of a graph that ships with quell (games202).")
+      ->required();
+  add_repeatable(app, "--set", arguments.options.set, "NODE.PARAM=VALUE",
+                 "Set a parameter of a node, or of the graph (PARAM=VALUE); repeatable.")
+      ->group(kGraphGroup);
+  app.add_option("--params", arguments.options.params,
+                 "Read parameters from a JSON file: {\"node.param\": value}; repeatable, and --set wins.")
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->group(kGraphGroup);
+  add_options(app, arguments.plugins);
+}
+
+void add_options(CLI::App& app, SequenceArguments& arguments) {
+  app.add_option("SEQUENCE", arguments.sequence,
+                 "A folder of images, which is recognised by its file names, or a sequence.json. May be left out when --in "
+                 "names every input.");
+  add_repeatable(
+      app, "--in", arguments.in, "INPUT=PATTERN",
+      "The files of one input of the graph, such as color=shot/beauty_%d.exr or depth=z.####.exr; repeatable. Settings "
+      "may follow: id=ID_%d.exr:background=-1, also :type=, :channels=R,G,B and :format=.")
+      ->group(kInputGroup);
+  add_text(app, "--frames", arguments.frames, "RANGE",
+           "Frames to compute: 1-100, 1-100x2 (every second), 1,5,9-12. Without it, all for which every input exists.")
+      ->group(kInputGroup);
+}
+
+int parse_count(const std::string& text, const char* option, int smallest, int largest) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < smallest || value > largest)
+    throw Error(Fault::usage, option,
+                "'" + text + "' is not a whole number from " + std::to_string(smallest) + " to " + std::to_string(largest));
+  return value;
+}
+
+}  // namespace quell::app

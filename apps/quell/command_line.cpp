@@ -1,0 +1,84 @@
+#include "command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "quell/text/diagnostic.h"
+
+namespace quell::app {
+namespace {
+
+/// "--out" of "--out=folder".
+std::string option_name(const std::string& argument) { return argument.substr(0, argument.find('=')); }
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+std::string explain_extra(const CLI::App& app, const std::string& argument) {
+  const bool is_program = app.get_parent() == nullptr;
+  if (argument.starts_with('-')) {
+    const std::string name = option_name(argument);
+    return "there is no option '" + name + "'" + did_you_mean(name, option_names(app));
+  }
+  if (!is_program) return "'" + argument + "' is one argument too many";
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  return "there is no command '" + argument + "'" + did_you_mean(argument, commands) + "; the commands are " +
+         list_names(commands, "and");
+}
+
+/// The option that an error is about, by the name with which CLI11 starts its message.
+std::string explain_mismatch(const CLI::App& app, const std::string& message) {
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_name(false, false);
+    if (name.empty() || message.find(name) == std::string::npos) continue;
+    if (option->count() > 1) return name + " may be given only once";
+    if (option->get_type_size() == 0) return name + " takes no value";
+    return name + " needs a value: " + name + " " + option->get_type_name();
+  }
+  return message;
+}
+
+std::string explain_missing(const CLI::App& app, const std::string& message) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (!option->get_required() || option->count() > 0) continue;
+    const std::string name = option->get_positional() ? option->get_name(true) : option->get_name(false, false);
+    const std::string value = option->get_positional() ? "" : " " + option->get_type_name();
+    return name + value + " is missing";
+  }
+  return message;
+}
+
+/// What is left over, options first: a misspelt option makes everything behind it look wrong.
+std::string first_extra(const CLI::App& app) {
+  const std::vector<std::string> rest = app.remaining();
+  const auto option = std::find_if(rest.begin(), rest.end(), [](const std::string& text) { return text.starts_with('-'); });
+  if (option != rest.end()) return *option;
+  return rest.empty() ? "" : rest.front();
+}
+
+}  // namespace
+
+std::string explain(const CLI::App& program, const CLI::ParseError& error) {
+  const std::vector<const CLI::App*> chosen = program.get_subcommands([](const CLI::App* command) { return command->parsed(); });
+  const CLI::App& app = chosen.empty() ? program : *chosen.front();
+  const std::string extra = first_extra(app);
+  const auto is = [&](CLI::ExitCodes code) { return error.get_exit_code() == static_cast<int>(code); };
+  std::string text = error.what();
+  if (extra.starts_with('-') || (is(CLI::ExitCodes::ExtrasError) && !extra.empty()))
+    text = explain_extra(app, extra);
+  else if (is(CLI::ExitCodes::RequiredError))
+    text = explain_missing(app, text);
+  else if (is(CLI::ExitCodes::ArgumentMismatch) || is(CLI::ExitCodes::ConversionError))
+    text = explain_mismatch(app, text);
+  const std::string command = chosen.empty() ? program.get_name() : program.get_name() + " " + app.get_name();
+  return text + "\n`" + command + " --help` tells more";
+}
+
+}  // namespace quell::app

@@ -1,0 +1,25 @@
+// The subcommands. Each adds itself to the program's options and returns what runs it.
+#pragma once
+
+#include <functional>
+
+#include "console.h"
+#include "exit_code.h"
+
+namespace CLI {
+class App;
+}
+
+namespace quell::app {
+
+struct Command {
+  CLI::App* options = nullptr;
+  std::function<ExitCode(Console&)> run;  ///< after the command line was parsed; throws Error
+};
+
+Command add_run(CLI::App& program);
+Command add_check(CLI::App& program);
+Command add_graph(CLI::App& program);
+Command add_passes(CLI::App& program);
+
+}  // namespace quell::app

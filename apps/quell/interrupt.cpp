@@ -1,0 +1,46 @@
+#include "interrupt.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <string_view>
+
+#include "exit_code.h"
+
+namespace quell::app {
+namespace {
+
+std::atomic<int> signals{0};
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may use it");
+
+constexpr std::string_view kNotice = "\nstopping; give the signal once more to stop at once\n";
+std::size_t notice_start = 1;  // 0 on a terminal, whose progress line must end first
+
+void handle(int) {
+  const int saved_errno = errno;
+  if (signals.fetch_add(1) > 0) _exit(kInterrupted);
+  [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, kNotice.data() + notice_start, kNotice.size() - notice_start);
+  errno = saved_errno;
+}
+
+}  // namespace
+
+Interrupt::Interrupt() {
+  notice_start = isatty(STDERR_FILENO) == 1 ? 0 : 1;
+  struct sigaction action {};
+  action.sa_handler = handle;
+  action.sa_flags = SA_RESTART;  // reading and writing files goes on
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, &former_int_);
+  sigaction(SIGTERM, &action, &former_term_);
+}
+
+Interrupt::~Interrupt() {
+  sigaction(SIGINT, &former_int_, nullptr);
+  sigaction(SIGTERM, &former_term_, nullptr);
+}
+
+bool Interrupt::requested() { return signals.load() > 0; }
+
+}  // namespace quell::app

@@ -1,0 +1,147 @@
+#include "job.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "graph_files.h"
+#include "quell/text/diagnostic.h"
+
+namespace quell::app {
+namespace {
+
+constexpr std::size_t kMostListed = 10;
+
+std::vector<std::string> names_of_inputs(const Graph& graph) {
+  std::vector<std::string> names;
+  for (const GraphInput& input : graph.inputs) names.push_back(input.name);
+  return names;
+}
+
+/// Which inputs a graph wants, for a person who has to name their files.
+std::string describe_wanted(const Graph& graph) {
+  std::string text;
+  for (const GraphInput& input : graph.inputs)
+    text += (text.empty() ? "" : ", ") + input.name + (input.optional ? " (optional)" : "");
+  return text;
+}
+
+std::unique_ptr<Sequence> open_sequence(const Graph& graph, const SequenceArguments& arguments) {
+  if (!arguments.given())
+    throw Error(Fault::usage, "SEQUENCE",
+                "no sequence is given; name a folder, a sequence.json, or the files of each input (" + describe_wanted(graph) +
+                    ") with --in INPUT=PATTERN");
+  SequenceOptions options;
+  options.in = arguments.in;
+  if (!arguments.frames.empty()) options.frames = FrameRange::parse(arguments.frames);
+  std::unique_ptr<Sequence> sequence = Sequence::open(arguments.sequence, options);
+  for (const GraphInput& input : graph.inputs) sequence->expect(input.name, input.type);
+  return sequence;
+}
+
+/// A misspelt --in would otherwise be an input that nobody asks for.
+void require_known_names(const Graph& graph, const SequenceArguments& arguments) {
+  const std::vector<std::string> known = names_of_inputs(graph);
+  for (const std::string& option : arguments.in) {
+    const std::string name = option.substr(0, option.find('='));
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error(Fault::usage, "--in " + option,
+                  "the graph has no input '" + name + "'" + did_you_mean(name, known) + "; it has " + list_names(known, "and"));
+  }
+}
+
+void require_inputs(const Graph& graph, const std::vector<InputFiles>& found, const std::string& place) {
+  std::string missing;
+  for (const GraphInput& input : graph.inputs) {
+    const auto is_it = [&](const InputFiles& files) { return files.input == input.name; };
+    if (!input.optional && std::none_of(found.begin(), found.end(), is_it))
+      missing += "\n  " + input.name + " (" + std::string(name(input.type)) + ")" + (input.doc.empty() ? "" : ": " + input.doc);
+  }
+  if (missing.empty()) return;
+  std::string have;
+  for (const InputFiles& files : found) have += (have.empty() ? "" : ", ") + files.input;
+  throw Error(Fault::input, place,
+              "inputs of the graph '" + graph.name + "' are missing:" + missing +
+                  "\nthe sequence has: " + (have.empty() ? "nothing" : have) + "\nname their files, for example: --in " +
+                  missing.substr(3, missing.find(' ', 3) - 3) + "=FOLDER/NAME.####.exr");
+}
+
+/// The files of the inputs that the plan reads, in the graph's order.
+std::vector<InputFiles> select_inputs(const Plan& plan, const std::vector<InputFiles>& found) {
+  std::vector<InputFiles> selected;
+  for (std::size_t i = 0; i < plan.graph->inputs.size(); ++i) {
+    if (!plan.input_used[i]) continue;
+    const auto is_it = [&](const InputFiles& files) { return files.input == plan.graph->inputs[i].name; };
+    const auto files = std::find_if(found.begin(), found.end(), is_it);
+    if (files != found.end()) selected.push_back(*files);
+  }
+  return selected;
+}
+
+std::string list_missing(const std::vector<MissingFile>& missing) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(missing.size(), kMostListed); ++i)
+    text += "\n  frame " + std::to_string(missing[i].frame) + ", " + missing[i].input + ": " + missing[i].file.string();
+  if (missing.size() > kMostListed) text += "\n  and " + std::to_string(missing.size() - kMostListed) + " more";
+  return text;
+}
+
+std::vector<std::int64_t> choose_frames(const Sequence& sequence, const std::vector<InputFiles>& inputs,
+                                        const std::string& place) {
+  std::vector<std::string> names;
+  for (const InputFiles& files : inputs) names.push_back(files.input);
+  const std::vector<std::int64_t> frames = sequence.frames(names);
+  const std::vector<MissingFile> missing = sequence.missing(names);
+  const auto is_asked_for = [&](const MissingFile& file) { return std::binary_search(frames.begin(), frames.end(), file.frame); };
+  if (std::any_of(missing.begin(), missing.end(), is_asked_for))
+    throw Error(Fault::input, place, "files of the frames asked for are missing:" + list_missing(missing));
+  if (frames.empty())
+    throw Error(Fault::input, place,
+                "there is no frame for which every input exists" +
+                    (missing.empty() ? std::string() : "; missing are:" + list_missing(missing)));
+  if (!missing.empty()) {
+    std::vector<std::int64_t> dropped;
+    for (const MissingFile& file : missing) dropped.push_back(file.frame);
+    spdlog::warn("frames {} are left out, because files are missing:{}", FrameRange(dropped).text(), list_missing(missing));
+  }
+  return frames;
+}
+
+void tell_choice(const Job& job) {
+  std::vector<std::string> names;
+  for (const InputFiles& files : job.inputs) names.push_back("'" + files.input + "'");
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i) list += (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") + names[i];
+  spdlog::info("'{}' reads {} in {} frames: {}", job.graph->name, list, job.frames.size(), FrameRange(job.frames).text());
+}
+
+}  // namespace
+
+std::shared_ptr<const Graph> load(const GraphArguments& arguments) {
+  const std::filesystem::path file = find_graph(arguments.graph);
+  return load_graph(file, load_passes(arguments.plugins), arguments.options);
+}
+
+InputShapes shapes_of(const Graph& graph, FrameSource& source) {
+  InputShapes shapes;
+  for (const GraphInput& input : graph.inputs) shapes[input.name] = source.shape(input.name);
+  return shapes;
+}
+
+Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arguments, const std::vector<std::string>& dumps) {
+  require_known_names(*graph, arguments);
+  Job job;
+  job.graph = graph;
+  job.sequence = open_sequence(*graph, arguments);
+  spdlog::info(job.sequence->describe());
+  const std::vector<InputFiles> found = job.sequence->inputs();
+  const std::string place = arguments.sequence.empty() ? "--in" : arguments.sequence.string();
+  require_inputs(*graph, found, place);
+  job.plan = make_plan(graph, shapes_of(*graph, *job.sequence), dumps);
+  job.inputs = select_inputs(job.plan, found);
+  job.frames = choose_frames(*job.sequence, job.inputs, place);
+  tell_choice(job);
+  return job;
+}
+
+}  // namespace quell::app

@@ -1,0 +1,34 @@
+// A graph with a sequence that fits it: what a run needs before the first frame, and what check tells.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "arguments.h"
+#include "quell/graph/plan.h"
+#include "quell/sequence/sequence.h"
+
+namespace quell::app {
+
+struct Job {
+  std::shared_ptr<const Graph> graph;
+  std::unique_ptr<Sequence> sequence;
+  Plan plan;
+  std::vector<InputFiles> inputs;    ///< the files of each input that is read, in the graph's order
+  std::vector<std::int64_t> frames;  ///< to be computed
+};
+
+/// Loads the plugins and the graph. Throws Error(plugin) or Error(usage).
+std::shared_ptr<const Graph> load(const GraphArguments& arguments);
+
+/// Opens the sequence for the graph, tells what was recognised, and plans. Throws Error(input) when an input, or a file of the
+/// frames asked for, is missing; Error(usage) when the graph cannot run on these images.
+Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arguments,
+                const std::vector<std::string>& dumps = {});
+
+/// Shapes of all inputs, as far as the source has them.
+InputShapes shapes_of(const Graph& graph, FrameSource& source);
+
+}  // namespace quell::app

@@ -1,0 +1,109 @@
+#include "results.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <set>
+
+#include "quell/sequence/file_pattern.h"
+
+namespace quell::app {
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Result {
+  std::string name;
+  PortType type;
+};
+
+std::vector<Result> find_results(const Plan& plan) {
+  std::vector<Result> results;
+  for (const int output : plan.outputs) {
+    const GraphOutput& out = plan.graph->outputs[static_cast<std::size_t>(output)];
+    results.push_back({out.name, plan.graph->type(out.from)});
+  }
+  for (const Endpoint& dump : plan.dumps) results.push_back({plan.graph->describe(dump), plan.graph->type(dump)});
+  return results;
+}
+
+ResultFiles list_series(const Job& job, const FileSink& sink, const FileSinkOptions& options, const Result& result,
+                        std::size_t format) {
+  ResultFiles series;
+  for (const std::int64_t frame : job.frames) series.files.push_back(sink.files(result.name, frame, result.type)[format]);
+  const std::string digits(static_cast<std::size_t>(options.padding), '#');
+  const std::string extension = series.files.front().extension().string();
+  series.pattern = (options.folder / (result.name + "." + digits + extension)).string();
+  return series;
+}
+
+/// The files of an input in the job's frames.
+std::set<fs::path> files_of(const InputFiles& input, const std::vector<std::int64_t>& frames) {
+  const fs::path pattern = input.pattern;
+  const FilePattern names = FilePattern::parse(pattern.filename().string(), pattern.parent_path(), "SEQUENCE");
+  std::set<fs::path> files;
+  for (const std::int64_t frame : frames) files.insert(names.file_name(frame));
+  return files;
+}
+
+std::string pad(const std::string& name, std::size_t width) { return "  " + name + std::string(width - name.size() + 2, ' '); }
+
+}  // namespace
+
+std::vector<ResultFiles> list_results(const Job& job, const FileSink& sink, const FileSinkOptions& options) {
+  std::vector<ResultFiles> all;
+  for (const Result& result : find_results(job.plan)) {
+    const std::size_t formats = sink.files(result.name, job.frames.front(), result.type).size();
+    for (std::size_t format = 0; format < formats; ++format) all.push_back(list_series(job, sink, options, result, format));
+  }
+  return all;
+}
+
+void refuse_to_replace_inputs(const Job& job, const std::vector<ResultFiles>& results) {
+  for (const InputFiles& input : job.inputs) {
+    const fs::path folder = fs::path(input.pattern).parent_path();
+    const std::set<fs::path> names = files_of(input, job.frames);
+    for (const ResultFiles& series : results) {
+      std::error_code error;
+      if (!fs::equivalent(folder.empty() ? "." : folder, series.files.front().parent_path(), error)) continue;
+      for (const fs::path& file : series.files)
+        if (names.contains(file.filename()))
+          throw Error(
+              Fault::usage, "--out",
+              "the results would replace " + file.string() + ", which is read as '" + input.input + "'; choose another folder");
+    }
+  }
+}
+
+void prepare_folder(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
+    throw Error(Fault::usage, "--out", folder.string() + " is a file; name a folder for the results");
+  fs::create_directories(folder, error);
+  if (error) throw Error(Fault::usage, "--out", "the folder " + folder.string() + " cannot be made: " + error.message());
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw Error(Fault::usage, "--out", "nothing can be written to " + folder.string() + ": " + std::strerror(errno));
+}
+
+std::string describe_dry_run(const Job& job, const std::vector<ResultFiles>& results) {
+  std::size_t width = 0;
+  for (const InputFiles& input : job.inputs) width = std::max(width, input.input.size());
+  std::string text = "would read, for frames " + FrameRange(job.frames).text() + ":\n";
+  for (const InputFiles& input : job.inputs) text += pad(input.input, width) + input.pattern + "\n";
+  text += "would run:\n" + describe(job.plan);
+  text += "would write:\n";
+  std::size_t replaced = 0;
+  for (const ResultFiles& series : results) {
+    text += "  " + series.pattern + "  (" + std::to_string(series.files.size()) + " files)\n";
+    for (const fs::path& file : series.files) {
+      std::error_code error;
+      replaced += fs::exists(file, error) ? 1 : 0;
+    }
+  }
+  if (replaced > 0) text += "  " + std::to_string(replaced) + " of these files exist and would be replaced\n";
+  return text + "dry run: nothing was computed or written\n";
+}
+
+}  // namespace quell::app

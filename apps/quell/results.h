@@ -1,0 +1,32 @@
+// What a run writes, known before it starts.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "job.h"
+#include "quell/sequence/file_sink.h"
+
+namespace quell::app {
+
+/// One series of files: an output or a dump in one format.
+struct ResultFiles {
+  std::string pattern;                       ///< "out/color.####.exr"
+  std::vector<std::filesystem::path> files;  ///< of each frame
+};
+
+/// Every file that the run of a job writes. Throws Error(usage) when no chosen format can hold an image.
+std::vector<ResultFiles> list_results(const Job& job, const FileSink& sink, const FileSinkOptions& options);
+
+/// Throws Error(usage) when a result would replace one of the files that the run reads.
+void refuse_to_replace_inputs(const Job& job, const std::vector<ResultFiles>& results);
+
+/// Makes the folder. Throws Error(usage) when that fails, or when nothing can be written there.
+void prepare_folder(const std::filesystem::path& folder);
+
+/// What would be read, run and written.
+std::string describe_dry_run(const Job& job, const std::vector<ResultFiles>& results);
+
+}  // namespace quell::app
