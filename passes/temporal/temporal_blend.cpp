@@ -129,17 +129,19 @@ class TemporalBlendPass final : public Pass {
     return static_cast<std::size_t>(width) + 2 * static_cast<std::size_t>(params_.clamp_radius);
   }
 
-  // The output may lie on the history, pixel for pixel, which __restrict would deny.
+  // The output may lie on the history, pixel for pixel: __restrict would deny that, ivdep promises only that no pixel depends on
+  // another.
   template <class Limit>
   void blend_row(const Job& job, int y, int c, const Limit& limit) const {
     const float *color = job.color.row(y, c), *history = job.history.row(y, c);
     const float* valid = job.valid ? job.valid.row(y) : nullptr;
     float* out = job.out.row(y, c);
     const double alpha = params_.alpha;
+#pragma GCC ivdep
     for (int x = 0; x < job.out.width; ++x) {
+      const float mixed = static_cast<float>(alpha * color[x] + (1 - alpha) * limit(x, history[x]));
       // Chosen, not multiplied by 0: what is not valid need not be finite.
-      const bool keep = !valid || valid[x] > 0.5F;
-      out[x] = keep ? static_cast<float>(alpha * color[x] + (1 - alpha) * limit(x, history[x])) : color[x];
+      out[x] = !valid || valid[x] > 0.5F ? mixed : color[x];
     }
   }
 

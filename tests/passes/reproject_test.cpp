@@ -165,8 +165,9 @@ TEST(Reproject, DiffersBetweenNearestAndTruncationAtTheLeftAndUpperBorderAlone) 
         const bool off = px < 0 || py<0, taken = px> - 1 && py > -1 && px < 9 && py < 9;
         ASSERT_EQ(truncate.output("valid").at(x, y), taken ? 1.0F : 0.0F) << px << "," << py;
         ASSERT_EQ(nearest.output("valid").at(x, y), taken && !off ? 1.0F : 0.0F) << px << "," << py;
-        if (taken) ASSERT_EQ(truncate.output("color").at(x, y), value(static_cast<int>(px), static_cast<int>(py), 0));
-        if (taken && !off) ASSERT_EQ(nearest.output("color").at(x, y), truncate.output("color").at(x, y));
+        const float fetched = taken ? value(static_cast<int>(px), static_cast<int>(py), 0) : 0.0F;
+        ASSERT_EQ(truncate.output("color").at(x, y), fetched) << px << "," << py;
+        ASSERT_EQ(nearest.output("color").at(x, y), off ? 0.0F : fetched) << px << "," << py;
       }
   }
 }
