@@ -93,10 +93,6 @@ class Builder {
     node.inputs.resize(leaf.inputs.size());
     for (std::size_t i = 0; i < leaf.inputs.size(); ++i)
       for (const Arrival& arrival : leaf.inputs[i]) node.inputs[i].push_back(arrival.edge);
-    for (const auto& items : leaf.output_types) {
-      std::vector<PortType>& types = node.output_types.emplace_back();
-      for (const std::optional<PortType>& type : items) types.push_back(type.value());  // all are known when nothing is wrong
-    }
   }
 
   // From an index into the leaves to one into the nodes. What was left out is not referred to any more.

@@ -1,60 +1,70 @@
 #include "quell/graph/graph.h"
 
-#include <algorithm>
-
 #include "quell/graph/absent.h"
 #include "quell/graph/build.h"
-#include "quell/graph/fields.h"
+#include "quell/graph/follow_type.h"
 #include "quell/graph/outside.h"
 #include "quell/graph/types.h"
 
 namespace quell {
 namespace {
 
-// Every name that Graph::find understands; what is written before a '.' or '[' may be looked for in them.
-std::vector<std::string> endpoint_names(const Graph& graph) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < graph.inputs.size(); ++i) names.push_back(graph.describe({-1, static_cast<int>(i), 0}));
-  for (std::size_t node = 0; node < graph.nodes.size(); ++node)
-    for (std::size_t port = 0; port < graph.nodes[node].output_types.size(); ++port)
-      for (std::size_t item = 0; item < graph.nodes[node].output_types[port].size(); ++item)
-        names.push_back(graph.describe({static_cast<int>(node), static_cast<int>(port), static_cast<int>(item)}));
-  for (const GraphOutput& output : graph.subgraph_outputs) names.push_back(output.name);
-  return names;
-}
+const Node& node_at(const Graph& graph, int node) { return graph.nodes.at(static_cast<std::size_t>(node)); }
 
-const Node& node_of(const Graph& graph, const Endpoint& endpoint) {
-  return graph.nodes.at(static_cast<std::size_t>(endpoint.node));
+class NodeView final : public detail::FollowedGraph {
+ public:
+  explicit NodeView(const Graph& graph) : graph_(graph) {}
+  PortType input_type(int input) const override { return graph_.inputs.at(static_cast<std::size_t>(input)).type; }
+  const quell_pass_desc* pass(int node) const override { return node_at(graph_, node).pass; }
+  detail::FollowedSource source(int node, int input, int item) const override {
+    const std::vector<Edge>& edges = node_at(graph_, node).inputs.at(static_cast<std::size_t>(input));
+    return {static_cast<std::size_t>(item) < edges.size() ? &edges[static_cast<std::size_t>(item)] : nullptr, {}, false};
+  }
+
+ private:
+  const Graph& graph_;
+};
+
+// Everything that an edge may come from.
+std::vector<Endpoint> endpoints(const Graph& graph) {
+  std::vector<Endpoint> result;
+  for (int input = 0; input < static_cast<int>(graph.inputs.size()); ++input) result.push_back({-1, input, 0});
+  for (int index = 0; index < static_cast<int>(graph.nodes.size()); ++index) {
+    const Node& node = node_at(graph, index);
+    for (int port = 0; port < static_cast<int>(node.pass->output_count); ++port) {
+      const quell_port_desc& output = *QUELL_AT(quell_port_desc, node.pass->outputs, port);
+      const bool is_array = output.flags & QUELL_PORT_ARRAY;
+      const int items = is_array ? static_cast<int>(node.inputs.at(static_cast<std::size_t>(output.same_as)).size()) : 1;
+      for (int item = 0; item < items; ++item) result.push_back({index, port, item});
+    }
+  }
+  return result;
 }
 
 }  // namespace
 
 std::string Graph::describe(const Endpoint& endpoint) const {
   if (endpoint.node < 0) return inputs.at(static_cast<std::size_t>(endpoint.port)).name;
-  const Node& node = node_of(*this, endpoint);
+  const Node& node = node_at(*this, endpoint.node);
   const quell_port_desc& output = *QUELL_AT(quell_port_desc, node.pass->outputs, endpoint.port);
   const std::string item = output.flags & QUELL_PORT_ARRAY ? "[" + std::to_string(endpoint.item) + "]" : "";
   return node.name + "." + output.name + item;
 }
 
 PortType Graph::type(const Endpoint& endpoint) const {
-  const auto port = static_cast<std::size_t>(endpoint.port);
-  if (endpoint.node < 0) return inputs.at(port).type;
-  return node_of(*this, endpoint).output_types.at(port).at(static_cast<std::size_t>(endpoint.item));
+  return detail::follow_type(NodeView(*this), endpoint).value();  // nothing is broken in a graph that was checked
 }
 
 Endpoint Graph::find(std::string_view wanted) const {
-  for (std::size_t i = 0; i < inputs.size(); ++i)
-    if (inputs[i].name == wanted) return {-1, static_cast<int>(i), 0};
-  for (std::size_t node = 0; node < nodes.size(); ++node)
-    for (std::size_t port = 0; port < nodes[node].output_types.size(); ++port)
-      for (std::size_t item = 0; item < nodes[node].output_types[port].size(); ++item) {
-        const Endpoint endpoint{static_cast<int>(node), static_cast<int>(port), static_cast<int>(item)};
-        if (describe(endpoint) == wanted) return endpoint;
-      }
-  for (const GraphOutput& output : subgraph_outputs)
-    if (output.name == wanted) return output.from;
-  const std::vector<std::string> names = endpoint_names(*this);
+  std::vector<std::string> names;
+  for (const Endpoint& endpoint : endpoints(*this)) {
+    names.push_back(describe(endpoint));
+    if (names.back() == wanted) return endpoint;
+  }
+  for (const GraphOutput& output : subgraph_outputs) {
+    names.push_back(output.name);
+    if (names.back() == wanted) return output.from;
+  }
   const std::string close = did_you_mean(wanted, names);
   throw Error(Fault::usage, "'" + std::string(wanted) + "'",
               "the graph '" + name + "' has nothing of that name" +
@@ -69,7 +79,6 @@ std::shared_ptr<const Graph> parse_graph(const SourceTextPtr& source, const Regi
   settings.apply_files();
   for (const detail::Setting& setting : detail::read_outside(options, errors)) settings.apply(setting);
   const detail::Connections connections = detail::connect(*unfolded, errors);
-  detail::resolve_types(*unfolded, !errors.empty());
   detail::check_types(*unfolded, connections, errors);
   const std::vector<bool> left_out = detail::leave_out_absent(*unfolded, connections, errors);
   std::shared_ptr<const Graph> graph = detail::build(*unfolded, connections, left_out, errors);

@@ -43,8 +43,7 @@ struct Node {
   std::string name;  ///< qualified by the subgraphs around it: "svgf.atrous0"
   const quell_pass_desc* pass = nullptr;
   std::shared_ptr<const PassInstance> instance;
-  std::vector<std::vector<Edge>> inputs;            ///< for each input port of the pass; empty when unconnected
-  std::vector<std::vector<PortType>> output_types;  ///< for each output, of each item ("same as input X" resolved)
+  std::vector<std::vector<Edge>> inputs;  ///< for each input port of the pass; empty when unconnected
   Position where;
 };
 

@@ -104,7 +104,6 @@ class Unfolder {
     leaf.pass = pass->desc;
     leaf.params.resize(pass->desc->param_count);
     leaf.inputs.resize(pass->desc->input_count);
-    leaf.output_types.resize(pass->desc->output_count);
     return leaf;
   }
 

@@ -66,8 +66,7 @@ struct Leaf {
   const quell_pass_desc* pass = nullptr;  ///< null: broken, which was told
   std::vector<SetParam> params;
   bool params_are_broken = false;
-  std::vector<std::vector<Arrival>> inputs;                        ///< for each input port of the pass
-  std::vector<std::vector<std::optional<PortType>>> output_types;  ///< for each output, of each item
+  std::vector<std::vector<Arrival>> inputs;  ///< for each input port of the pass
 
   const quell_port_desc& input(std::size_t i) const { return *QUELL_AT(quell_port_desc, pass->inputs, i); }
   const quell_port_desc& output(std::size_t i) const { return *QUELL_AT(quell_port_desc, pass->outputs, i); }

@@ -1,83 +1,36 @@
 #include "quell/graph/types.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+
+#include "quell/graph/follow_type.h"
 
 namespace quell::detail {
 namespace {
 
-std::optional<PortType> type_of(const Unfolded& graph, const Endpoint& endpoint) {
-  const auto port = static_cast<std::size_t>(endpoint.port);
-  if (endpoint.node < 0) return graph.root.document->inputs[port].type;
-  const auto& items = graph.leaves[static_cast<std::size_t>(endpoint.node)].output_types[port];
-  const auto item = static_cast<std::size_t>(endpoint.item);
-  return item < items.size() ? items[item] : std::nullopt;
-}
-
-enum class Stage { undelayed, delayed, first_accepted };
-
-// The type of one source of the input that an output follows.
-std::optional<PortType> followed_type(const Unfolded& graph, const Arrival& arrival, const quell_port_desc& input, Stage stage) {
-  const bool is_usable = arrival.edge.delay == 0 || stage != Stage::undelayed;
-  std::optional<PortType> type = is_usable ? type_of(graph, arrival) : std::nullopt;
-  const Initial& initial = arrival.edge.initial;
-  if (!type && arrival.edge.delay != 0 && initial.kind == Initial::Kind::endpoint) type = type_of(graph, initial.endpoint);
-  if (!type && stage == Stage::first_accepted && arrival.state != Arrival::State::broken)
-    type = static_cast<PortType>(std::countr_zero(input.types));
-  return type;
-}
-
-// Returns whether anything became known.
-bool resolve_leaf(const Unfolded& graph, Leaf& leaf, Stage stage) {
-  bool is_new = false;
-  for (std::uint32_t i = 0; i < leaf.pass->output_count; ++i) {
-    const int followed = leaf.output(i).same_as;
-    if (followed < 0) continue;
-    const std::vector<Arrival>& arrivals = leaf.inputs[static_cast<std::size_t>(followed)];
-    auto& items = leaf.output_types[i];
-    for (std::size_t item = 0; item < items.size(); ++item) {
-      if (items[item]) continue;
-      const Arrival unconnected{Arrival::State::absent, {}, {}, {}, {}};
-      const Arrival& arrival = item < arrivals.size() ? arrivals[item] : unconnected;
-      items[item] = followed_type(graph, arrival, leaf.input(static_cast<std::size_t>(followed)), stage);
-      is_new = is_new || items[item];
-    }
+class LeafView final : public FollowedGraph {
+ public:
+  explicit LeafView(const Unfolded& graph) : graph_(graph) {}
+  PortType input_type(int input) const override { return graph_.root.document->inputs[static_cast<std::size_t>(input)].type; }
+  const quell_pass_desc* pass(int node) const override { return graph_.leaves[static_cast<std::size_t>(node)].pass; }
+  FollowedSource source(int node, int input, int item) const override {
+    const std::vector<Arrival>& arrivals = graph_.leaves[static_cast<std::size_t>(node)].inputs[static_cast<std::size_t>(input)];
+    if (static_cast<std::size_t>(item) >= arrivals.size()) return {};
+    const Arrival& arrival = arrivals[static_cast<std::size_t>(item)];
+    if (arrival.state == Arrival::State::absent) return {nullptr, arrival.type, false};
+    return {&arrival.edge, arrival.type, arrival.state == Arrival::State::broken};
   }
-  return is_new;
-}
 
-void start(Leaf& leaf) {
-  for (std::uint32_t i = 0; i < leaf.pass->output_count; ++i) {
-    const quell_port_desc& output = leaf.output(i);
-    if (output.same_as < 0) {
-      leaf.output_types[i].assign(1, static_cast<PortType>(std::countr_zero(output.types)));
-      continue;
-    }
-    const std::size_t sources = leaf.inputs[static_cast<std::size_t>(output.same_as)].size();
-    leaf.output_types[i].assign(output.flags & QUELL_PORT_ARRAY ? sources : 1, std::nullopt);
-  }
-}
-
-bool resolve_all(Unfolded& graph, Stage stage) {
-  bool is_new = false;
-  for (Leaf& leaf : graph.leaves) {
-    is_new = (leaf.pass && resolve_leaf(graph, leaf, stage)) || is_new;
-    if (is_new && stage == Stage::first_accepted) return true;  // one guess may settle all others
-  }
-  return is_new;
-}
-
-void resolve_to_the_end(Unfolded& graph, Stage stage) {
-  while (resolve_all(graph, stage)) {}
-}
+ private:
+  const Unfolded& graph_;
+};
 
 class Checker {
  public:
   Checker(const Unfolded& graph, Diagnostics& errors) : graph_(graph), errors_(errors) {}
 
   void check(const Arrival& arrival, Types accepted, const std::string& label, const Scope& scope) {
-    const std::optional<PortType> type = type_of(graph_, arrival);
+    const std::optional<PortType> type = type_of(arrival);
     if (!type) return;
     if (!accepts(accepted, *type)) {
       errors_.error(arrival.edge.where, label + "takes " + quell::describe(accepted) + "; this is " + std::string(name(*type)),
@@ -88,7 +41,7 @@ class Checker {
     const Initial& initial = arrival.edge.initial;
     if (initial.kind == Initial::Kind::constant) check_constant(arrival, *type, scope);
     if (initial.kind != Initial::Kind::endpoint) return;
-    const std::optional<PortType> first = type_of(graph_, initial.endpoint);
+    const std::optional<PortType> first = follow_type(graph_, initial.endpoint);
     if (first && first != type)
       errors_.error(arrival.initial_where,
                     "the initial value is " + std::string(name(*first)) + ", but what follows is " + std::string(name(*type)) +
@@ -97,6 +50,11 @@ class Checker {
   }
 
  private:
+  std::optional<PortType> type_of(const Arrival& arrival) const {
+    if (arrival.type || arrival.state != Arrival::State::connected) return arrival.type;
+    return follow_type(graph_, arrival.edge.from);
+  }
+
   void check_constant(const Arrival& arrival, PortType type, const Scope& scope) {
     const std::vector<double>& constant = arrival.edge.initial.constant;
     const auto tell = [&](const std::string& message) { errors_.error(arrival.initial_where, message, scope.included_from()); };
@@ -115,25 +73,11 @@ class Checker {
     }
   }
 
-  const Unfolded& graph_;
+  LeafView graph_;
   Diagnostics& errors_;
 };
 
 }  // namespace
-
-std::optional<PortType> type_of(const Unfolded& graph, const Arrival& arrival) {
-  if (arrival.type) return arrival.type;
-  return arrival.state == Arrival::State::connected ? type_of(graph, arrival.edge.from) : std::nullopt;
-}
-
-void resolve_types(Unfolded& graph, bool has_errors) {
-  for (Leaf& leaf : graph.leaves)
-    if (leaf.pass) start(leaf);
-  resolve_to_the_end(graph, Stage::undelayed);
-  resolve_to_the_end(graph, Stage::delayed);
-  if (has_errors) return;  // a type may be unknown because of them
-  while (resolve_all(graph, Stage::first_accepted)) resolve_to_the_end(graph, Stage::delayed);
-}
 
 void check_types(const Unfolded& graph, const Connections& connections, Diagnostics& errors) {
   Checker checker(graph, errors);
