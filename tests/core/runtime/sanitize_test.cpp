@@ -1,0 +1,59 @@
+#include "quell/runtime/sanitize.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/core/runtime/memory_stream.h"
+
+namespace quell {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+class Sanitize : public ::testing::Test {
+ protected:
+  BufferPool pool;
+  std::unique_ptr<Executor> executor = make_executor(2);
+};
+
+TEST_F(Sanitize, CountsAndReplacesWhatIsNotFinite) {
+  Image image = flat_color({33, 5}, 2.0F, pool);
+  image.writable_floats().at(32, 4, 2) = kNan;
+  image.writable_floats().at(0, 0, 0) = kInfinity;
+  image.writable_floats().at(1, 0, 0) = -kInfinity;
+  image.writable_floats().at(2, 0, 0) = std::numeric_limits<float>::max();
+  Item item = image;
+  EXPECT_EQ(sanitize(item, *executor, pool), 3);
+  EXPECT_EQ(item.image()->floats().at(32, 4, 2), 0.0F);
+  EXPECT_EQ(item.image()->floats().at(0, 0, 0), 0.0F);
+  EXPECT_EQ(item.image()->floats().at(2, 0, 0), std::numeric_limits<float>::max());
+  EXPECT_EQ(item.image()->floats().at(5, 3, 1), 2.0F);
+  EXPECT_EQ(image.floats().at(0, 0, 0), kInfinity) << "who else holds the image keeps it as it was";
+}
+
+TEST_F(Sanitize, TakesADepthThatIsNotFiniteForNoSurface) {
+  Image depth(QUELL_TYPE_DEPTH, {2, 1}, pool);
+  depth.writable_floats().at(0, 0) = kInfinity;
+  depth.writable_floats().at(1, 0) = 3.0F;
+  Item item = depth;
+  EXPECT_EQ(sanitize(item, *executor, pool), 1);
+  EXPECT_EQ(item.image()->floats().at(0, 0), 1e10F);
+  EXPECT_EQ(item.image()->floats().at(1, 0), 3.0F);
+}
+
+TEST_F(Sanitize, LeavesFiniteImagesAndEverythingElseAlone) {
+  Image image = flat_color({4, 4}, 1.0F, pool);
+  const void* pixels = image.buffer().data();
+  Item item = std::move(image);
+  EXPECT_EQ(sanitize(item, *executor, pool), 0);
+  EXPECT_EQ(item.image()->buffer().data(), pixels);
+  Item camera = Camera();
+  EXPECT_EQ(sanitize(camera, *executor, pool), 0);
+  Item nothing;
+  EXPECT_EQ(sanitize(nothing, *executor, pool), 0);
+}
+
+}  // namespace
+}  // namespace quell
