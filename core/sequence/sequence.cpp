@@ -2,145 +2,15 @@
 
 #include <algorithm>
 #include <iterator>
-#include <mutex>
-#include <set>
 
 #include "quell/sequence/camera_file.h"
-#include "quell/sequence/image_input.h"
-#include "quell/sequence/input_spec.h"
 #include "quell/sequence/sequence_file.h"
-#include "quell/text/diagnostic.h"
+#include "quell/sequence/sequence_state.h"
+#include "quell/text/error.h"
 
 namespace quell {
-namespace {
 
 namespace fs = std::filesystem;
-
-/// An input and the files it has.
-struct Input {
-  InputSpec spec;
-  std::vector<std::int64_t> frames;
-  bool has_sidecars = false;  ///< frame.<n>.json lie beside the files
-};
-
-/// Folders' listings, each read once.
-class Listings {
- public:
-  const std::vector<std::string>& of(const fs::path& folder) {
-    const auto found = listings_.find(folder);
-    return found != listings_.end() ? found->second : listings_.emplace(folder, list_files(folder)).first->second;
-  }
-
- private:
-  std::map<fs::path, std::vector<std::string>> listings_;
-};
-
-bool has_sidecars(const std::vector<std::string>& listing) {
-  const FilePattern sidecar({}, "frame.", 1, ".json");
-  return std::any_of(listing.begin(), listing.end(), [&](const std::string& name) { return sidecar.match(name).has_value(); });
-}
-
-std::string padding_warning(const InputSpec& spec, const std::vector<std::string>& others, bool none) {
-  const std::string& example = others.front();
-  const auto match = spec.pattern.match(example);
-  return spec.pattern.text() + ": " + (none ? "no file" : "not every file") + " is named like this pattern of '" + spec.name +
-         "'; the folder has " + example + ", where the pattern says " + spec.pattern.file_name(match->frame) +
-         " (#### is a number of four digits, %d one without leading zeros)";
-}
-
-}  // namespace
-
-struct Sequence::State {
-  std::string title;  // what was recognised
-  std::map<std::string, Input, std::less<>> inputs;
-  std::optional<FrameRange> asked;
-  std::map<std::string, PortType, std::less<>> expected;
-
-  mutable std::mutex mutex;  // guards what follows
-  std::set<std::string> warnings;
-  std::map<std::string, Shape, std::less<>> shapes;
-
-  void add(InputSpec spec, Listings& listings) {
-    const std::vector<std::string>& listing = listings.of(spec.pattern.folder());
-    FrameFiles files = find_frames(spec.pattern, listing);
-    if (!files.padded_otherwise.empty()) warnings.insert(padding_warning(spec, files.padded_otherwise, files.frames.empty()));
-    const std::string name = spec.name;
-    inputs.insert_or_assign(name, Input{std::move(spec), std::move(files.frames), has_sidecars(listing)});
-  }
-
-  const Input* find(std::string_view name) const {
-    const auto found = inputs.find(name);
-    return found == inputs.end() ? nullptr : &found->second;
-  }
-
-  const Input& require(std::string_view name) const {
-    if (const Input* input = find(name)) return *input;
-    std::vector<std::string> names;
-    for (const auto& [known, input] : inputs) names.push_back(known);
-    throw Error(Fault::input, title,
-                "the sequence has no input '" + std::string(name) + "'" + did_you_mean(name, names) + "; it has " +
-                    list_names(names, "and") + "; add it with --in " + std::string(name) + "=PATTERN");
-  }
-
-  /// Throws when the input has no file at all.
-  const Input& require_files(std::string_view name) const {
-    const Input& input = require(name);
-    if (!input.frames.empty()) return input;
-    throw Error(Fault::input, input.spec.pattern.text(),
-                "there is no file of this name for the input '" + std::string(name) + "' (" + input.spec.origin + ")");
-  }
-
-  PortType type(const Input& input) const {
-    if (input.spec.type) return *input.spec.type;
-    if (const auto found = expected.find(input.spec.name); found != expected.end()) return found->second;
-    if (const auto usual = input.spec.usual_type()) return *usual;
-    throw Error(Fault::input, input.spec.pattern.text(),
-                "the type of the input '" + input.spec.name + "' is not known; state it: --in " + input.spec.name +
-                    "=PATTERN:type=scalar");
-  }
-
-  /// How to read its files. An id's background that is not stated is 0 beside sidecars (Cycles' numbering starts at 1 there), and
-  /// every negative value elsewhere.
-  ImageRequest request(const Input& input) const {
-    ImageRequest request{type(input), input.spec.channels, input.spec.background};
-    if (!request.background && input.has_sidecars) request.background = 0;
-    return request;
-  }
-
-  std::int64_t first_frame(const Input& input) const {
-    if (asked)
-      for (const std::int64_t frame : asked->frames())
-        if (std::binary_search(input.frames.begin(), input.frames.end(), frame)) return frame;
-    return input.frames.front();
-  }
-
-  Shape shape(std::string_view name) {
-    {
-      const std::lock_guard lock(mutex);
-      if (const auto found = shapes.find(name); found != shapes.end()) return found->second;
-    }
-    const Input& input = require_files(name);
-    Shape shape;
-    shape.type = type(input);
-    if (is_image(shape.type)) shape.size = probe_image(input.spec.pattern.path(first_frame(input)), request(input));
-    const std::lock_guard lock(mutex);
-    return shapes.emplace(name, shape).first->second;
-  }
-
-  /// The size of the images, for cameras that do not tell it.
-  Size resolution(const fs::path& camera) {
-    const auto is_picture = [&](const Input& input) {
-      const auto usual = input.spec.usual_type();
-      return !input.frames.empty() && (expected.contains(input.spec.name) || usual) && is_image(type(input));
-    };
-    if (const Input* color = find("color"); color && is_picture(*color)) return shape("color").size;
-    for (const auto& [name, input] : inputs)
-      if (is_picture(input)) return shape(name).size;
-    throw Error(
-        Fault::input, camera.string(),
-        "this camera's file does not tell the resolution, and the sequence has no image to take it from; add one with --in");
-  }
-};
 
 Sequence::Sequence(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Sequence::~Sequence() = default;
@@ -180,7 +50,7 @@ std::unique_ptr<Sequence> Sequence::open(const fs::path& path, const SequenceOpt
 }
 
 void Sequence::expect(std::string_view input, PortType type) {
-  const Input* found = state_->find(input);
+  const SequenceInput* found = state_->find(input);
   if (!found) return;
   if (found->spec.type && *found->spec.type != type)
     throw Error(Fault::input, found->spec.origin,
@@ -214,9 +84,10 @@ std::vector<MissingFile> Sequence::missing(const std::vector<std::string>& requi
       wanted.insert(wanted.end(), frames.begin(), frames.end());
     }
   std::vector<MissingFile> result;
-  for (const std::int64_t frame : FrameRange(std::move(wanted)).frames()) {
+  const FrameRange all(std::move(wanted));
+  for (const std::int64_t frame : all.frames()) {
     for (const std::string& name : required) {
-      const Input& input = state_->require(name);
+      const SequenceInput& input = state_->require(name);
       if (!std::binary_search(input.frames.begin(), input.frames.end(), frame))
         result.push_back({name, frame, input.spec.pattern.path(frame)});
     }
@@ -236,7 +107,7 @@ std::vector<InputFiles> Sequence::inputs() const {
 
 int Sequence::padding() const {
   if (state_->inputs.empty()) return 4;
-  const Input* color = state_->find("color");
+  const SequenceInput* color = state_->find("color");
   const int digits = (color ? *color : state_->inputs.begin()->second).spec.pattern.digits();
   return digits > 1 ? digits : 4;
 }
@@ -267,7 +138,7 @@ std::optional<Shape> Sequence::shape(std::string_view input) {
 }
 
 Item Sequence::read(std::string_view name, std::int64_t frame, BufferPool& pool) {
-  const Input& input = state_->require(name);
+  const SequenceInput& input = state_->require(name);
   const fs::path file = input.spec.pattern.path(frame);
   std::error_code error;
   if (!fs::exists(file, error))

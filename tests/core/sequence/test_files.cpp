@@ -1,0 +1,98 @@
+#include "tests/core/sequence/test_files.h"
+
+#include <OpenImageIO/imageio.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace quell::test {
+
+namespace fs = std::filesystem;
+
+TempFolder::TempFolder() {
+  std::string pattern = (fs::temp_directory_path() / "quell-test-XXXXXX").string();
+  if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
+  path_ = pattern;
+}
+
+TempFolder::~TempFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+std::vector<std::string> TempFolder::names() const {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(path_)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void make_exr(const fs::path& file, const ExrContent& content) {
+  OIIO::ImageSpec spec(content.width, content.height, static_cast<int>(content.channels.size()), OIIO::TypeDesc(content.format));
+  spec.channelnames = content.channels;
+  spec.x = content.x, spec.y = content.y;
+  spec.full_x = spec.full_y = 0;
+  spec.full_width = content.full_width ? content.full_width : content.width;
+  spec.full_height = content.full_height ? content.full_height : content.height;
+  spec.tile_width = spec.tile_height = content.tile;
+  spec.attribute("compression", "zip");
+  std::vector<double> pixels = content.pixels;
+  pixels.resize(static_cast<std::size_t>(content.width) * static_cast<std::size_t>(content.height) * content.channels.size());
+  const auto output = OIIO::ImageOutput::create("openexr");
+  bool ok = output->open(file.string(), spec);
+  if (content.format == "uint") {
+    const std::vector<std::uint32_t> integers(pixels.begin(), pixels.end());
+    ok = ok && output->write_image(OIIO::TypeUInt32, integers.data());
+  } else {
+    ok = ok && output->write_image(OIIO::TypeDesc::DOUBLE, pixels.data());
+  }
+  if (!ok || !output->close()) throw std::runtime_error("the test cannot write " + file.string() + ": " + output->geterror());
+}
+
+void make_text(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+
+std::string read_bytes(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << stream.rdbuf();
+  return bytes.str();
+}
+
+ExrRead load_exr(const fs::path& file) {
+  const auto input = OIIO::ImageInput::open(file.string());
+  if (!input) throw std::runtime_error("the test cannot read " + file.string() + ": " + OIIO::geterror());
+  const OIIO::ImageSpec& spec = input->spec();
+  ExrRead read{spec.width, spec.height, {}, {}, spec.get_string_attribute("compression").c_str()};
+  for (int c = 0; c < spec.nchannels; ++c)
+    read.channels.push_back(spec.channelnames[static_cast<std::size_t>(c)] + ":" + spec.channelformat(c).c_str());
+  read.pixels.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
+                     static_cast<std::size_t>(spec.nchannels));
+  input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, read.pixels.data());
+  return read;
+}
+
+std::vector<float> values(const Image& image) {
+  const FloatImage view = image.floats();
+  std::vector<float> all;
+  for (int c = 0; c < view.channels; ++c)
+    for (int y = 0; y < view.height; ++y) all.insert(all.end(), view.row(y, c), view.row(y, c) + view.width);
+  return all;
+}
+
+std::vector<std::uint32_t> id_values(const Image& image) {
+  const IdImage view = image.ids();
+  std::vector<std::uint32_t> all;
+  for (int y = 0; y < view.height; ++y) all.insert(all.end(), view.row(y), view.row(y) + view.width);
+  return all;
+}
+
+std::string sidecar_text(int width, int height, const std::string& objects) {
+  return "{\"width\": " + std::to_string(width) + ", \"height\": " + std::to_string(height) +
+         ", \"world_to_camera\": " + kIdentityText + ", \"world_to_pixel\": " + kIdentityText + ", \"objects\": {" + objects +
+         "}}";
+}
+
+}  // namespace quell::test
