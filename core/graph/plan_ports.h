@@ -19,7 +19,7 @@ inline bool is_array(const quell_port_desc& port) { return (port.flags & QUELL_P
 /// How many items an output has: those of its `same_as` input for an array, else one.
 inline std::size_t item_count(const Node& node, std::size_t output) {
   const quell_port_desc& port = output_port(node, output);
-  return is_array(port) && port.same_as >= 0 ? node.inputs[static_cast<std::size_t>(port.same_as)].size() : 1;
+  return is_array(port) ? node.inputs[static_cast<std::size_t>(port.same_as)].size() : 1;
 }
 
 /// "in", or "in[2]" for an item of an array.

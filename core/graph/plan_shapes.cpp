@@ -16,6 +16,7 @@ struct Expected {
   Shape shape;
   bool sized = true;  // the size is known, or needs none
   bool final = true;  // not a guess that a later round replaces
+  Size hint;          // of one that is not sized: better than nothing
 };
 
 struct Finding {
@@ -75,18 +76,21 @@ class ShapeSolver {
   }
 
   Expected expect(const Edge& edge) const {
-    const PortType type = graph_.type(edge.from);
-    if (!presence_.has(edge)) return {{type, {}, 0, false}};
+    if (!presence_.has(edge)) return {{graph_.type(edge.from), {}, 0, false}};
     if (edge.delay == 0) return expect(edge.from);
-    const bool initial_endpoint = edge.initial.kind == Initial::Kind::endpoint && presence_.has(edge.initial.endpoint);
-    if (presence_.has(edge.from)) {
-      if (known(edge.from) || !initial_endpoint) return expect(edge.from);
-      Expected guess = expect(edge.initial.endpoint);
-      guess.final = false;
-      return guess;
-    }
-    // The source is never there: the edge carries its initial value in every frame.
-    if (initial_endpoint) return expect(edge.initial.endpoint);
+    if (!presence_.has(edge.from)) return expect_initial(edge);  // in every frame, for lack of anything else
+    Expected source = expect(edge.from);
+    if (has_initial_endpoint(edge)) source.hint = expect(edge.initial.endpoint).shape.size;
+    return source;
+  }
+
+  bool has_initial_endpoint(const Edge& edge) const {
+    return edge.initial.kind == Initial::Kind::endpoint && presence_.has(edge.initial.endpoint);
+  }
+
+  Expected expect_initial(const Edge& edge) const {
+    if (has_initial_endpoint(edge)) return expect(edge.initial.endpoint);
+    const PortType type = graph_.type(edge.from);
     const auto values = static_cast<std::uint32_t>(edge.initial.constant.size());
     return {{type, {}, type == QUELL_TYPE_VALUE ? values : 0}, !is_image(type)};
   }
@@ -104,13 +108,15 @@ class ShapeSolver {
     const Node& node = node_of(planned.node);
     std::vector<std::vector<Expected>> expected = expect(node);
     bool any_open = false, all_final = true;
-    Size size;
+    Size size, hint;
     for (const auto& port : expected)
       for (const Expected& item : port) {
         if (is_image(item.shape.type) && item.shape.present && item.sized && size == Size{}) size = item.shape.size;
+        if (!item.sized && hint == Size{}) hint = item.hint;
         any_open |= !item.sized;
         all_final &= item.final;
       }
+    if (size == Size{}) size = hint;
     if (any_open && size == Size{}) return;  // perhaps in the next round
     PortShapes inputs;
     for (auto& port : expected) {
@@ -122,7 +128,7 @@ class ShapeSolver {
     }
     // What a guess leads to is not an error yet.
     std::vector<Finding>& findings = all_final ? certain_ : suspected_;
-    if (check_sizes(node, inputs, findings)) ask(planned, inputs, outputs_like(planned.node, size), findings);
+    if (check_sizes(node, inputs, findings)) ask(planned, inputs, outputs_like(planned.node, inputs, size), findings);
   }
 
   // The one place that decides which sizes may meet. A node's images all have one size: a pass cannot declare yet that it takes
@@ -151,7 +157,7 @@ class ShapeSolver {
   }
 
   void check_initial(const Edge& edge, const Shape& shape, std::vector<Finding>& findings) const {
-    if (edge.delay == 0 || edge.initial.kind != Initial::Kind::endpoint || !presence_.has(edge.initial.endpoint)) return;
+    if (edge.delay == 0 || !has_initial_endpoint(edge)) return;
     const Shape* initial = known(edge.initial.endpoint);
     if (!initial || initial->size == shape.size) return;
     findings.push_back({edge.where, "the initial value is " + sized(edge.initial.endpoint, initial->size) +
@@ -164,15 +170,18 @@ class ShapeSolver {
   }
 
   // What the outputs are unless the pass says otherwise.
-  PortShapes outputs_like(int index, Size size) const {
+  PortShapes outputs_like(int index, const PortShapes& inputs, Size size) const {
     const Node& node = node_of(index);
-    PortShapes outputs;
-    for (std::size_t port = 0; port < node.pass->output_count; ++port) {
-      std::vector<Shape>& items = outputs.emplace_back();
+    PortShapes outputs(node.pass->output_count);
+    for (std::size_t port = 0; port < outputs.size(); ++port) {
+      const quell_port_desc& desc = output_port(node, port);
       for (std::size_t i = 0; i < item_count(node, port); ++i) {
         const Endpoint endpoint{index, static_cast<int>(port), static_cast<int>(i)};
-        const PortType type = graph_.type(endpoint);
-        items.push_back({type, is_image(type) ? size : Size{}, type == QUELL_TYPE_VALUE ? 1u : 0u, presence_.has(endpoint)});
+        const auto followed = static_cast<std::size_t>(desc.same_as);
+        const bool follows = desc.same_as >= 0 && i < inputs[followed].size();
+        const PortType type = follows ? inputs[followed][i].type : graph_.type(endpoint);
+        outputs[port].push_back(
+            {type, is_image(type) ? size : Size{}, type == QUELL_TYPE_VALUE ? 1u : 0u, presence_.has(endpoint)});
       }
     }
     return outputs;
@@ -183,8 +192,9 @@ class ShapeSolver {
     try {
       PlannedNode answer = ask_pass(graph_, planned.node, inputs, outputs);
       if (!same(planned.outputs, answer.outputs))
-        changed_.push_back({node_of(planned.node).where,
-                            "the images of '" + name(planned.node) + "' find no size: it changes with every turn of the loop"});
+        changed_.push_back(
+            {node_of(planned.node).where,
+             "what '" + name(planned.node) + "' yields never settles: its shape changes with every turn of the loop"});
       planned = std::move(answer);
     } catch (const Error& error) {
       findings.push_back({node_of(planned.node).where, "'" + name(planned.node) + "': " + error.what(), error.fault()});

@@ -1,0 +1,171 @@
+// Many small random graphs, run step by step in the simplest way, against what their plans say.
+#include <random>
+#include <set>
+
+#include "tests/core/graph/plan_graphs.h"
+
+namespace quell::test {
+namespace {
+
+// Draws below a bound. Not std::uniform_int_distribution, whose numbers differ between libraries.
+class Dice {
+ public:
+  explicit Dice(unsigned seed) : engine_(seed) {}
+  int below(int bound) { return static_cast<int>(engine_() % static_cast<unsigned>(bound)); }
+  bool chance(int percent) { return below(100) < percent; }
+
+ private:
+  std::mt19937 engine_;
+};
+
+// All images have one size, so that any can be joined with any; 'weight' has fewer planes, depth too.
+std::string pick(Dice& dice, int nodes) {
+  if (nodes == 0 || dice.chance(20)) return dice.chance(50) ? "color" : "depth";
+  return "n" + std::to_string(dice.below(nodes)) + (dice.chance(70) ? ".color" : ".weight");
+}
+
+std::shared_ptr<const Graph> random_graph(unsigned seed) {
+  Dice dice(seed);
+  Builder builder;
+  builder.input("color").input("depth", QUELL_TYPE_DEPTH, true);
+  const int nodes = 1 + dice.below(9);
+  for (int n = 0; n < nodes; ++n) {
+    Wires wires{{"color", {pick(dice, n)}}};
+    for (int more = dice.below(4); more > 0; --more) {
+      Wire wire = pick(dice, n);
+      if (dice.chance(30)) wire = Wire(pick(dice, nodes), 1 + dice.below(3), dice.chance(30) ? pick(dice, n) : "");
+      wires["more"].push_back(wire);
+    }
+    builder.node("n" + std::to_string(n), mix(), wires, {{"in_place", dice.chance(70)}, {"scratch", dice.below(3) * 50000}});
+  }
+  for (int outputs = 1 + dice.below(3); outputs > 0; --outputs)
+    builder.output("n" + std::to_string(dice.below(nodes)) + ".color");
+  return builder.build();
+}
+
+// What happens to buffers in one frame, with nothing taken from the plan but what it orders.
+class Simulation {
+ public:
+  explicit Simulation(const Plan& plan) : plan_(plan), graph_(*plan.graph) {}
+
+  void run() {
+    for (std::size_t i = 0; i < graph_.inputs.size(); ++i)
+      if (plan_.input_used[i]) write({-1, static_cast<int>(i), 0}, next_buffer_++);
+    most_bytes_ = alive_bytes();
+    for (const PlannedNode& planned : plan_.nodes) step(planned);
+    for (const int output : plan_.outputs) expect_intact(graph_.outputs[static_cast<std::size_t>(output)].from, "an output");
+    for (const PlannedHistory& history : plan_.histories) expect_intact(history.from, "history");
+  }
+  std::size_t most_bytes() const { return most_bytes_; }
+  std::size_t left_bytes() const { return alive_bytes(); }
+
+ private:
+  void step(const PlannedNode& planned) {
+    const Node& node = graph_.nodes[static_cast<std::size_t>(planned.node)];
+    for (const auto& port : node.inputs)
+      for (const Edge& edge : port) {
+        if (edge.delay == 0 && plan_.shape(edge.from).present) expect_intact(edge.from, node.name);
+        const Endpoint& initial = edge.initial.endpoint;
+        if (edge.initial.kind == Initial::Kind::endpoint && plan_.shape(initial).present) expect_intact(initial, node.name);
+      }
+    for (std::size_t port = 0; port < planned.outputs.size(); ++port) {
+      const int place = planned.in_place_of[port];
+      const Endpoint endpoint{planned.node, static_cast<int>(port), 0};
+      write(endpoint, place < 0 ? next_buffer_++ : buffers_.at(node.inputs[static_cast<std::size_t>(place)][0].from));
+    }
+    most_bytes_ = std::max(most_bytes_, alive_bytes() + planned.scratch_bytes);
+    for (const Endpoint& endpoint : planned.last_uses) {
+      EXPECT_TRUE(buffers_.contains(endpoint)) << graph_.describe(endpoint) << " is released twice";
+      buffers_.erase(endpoint);
+    }
+  }
+
+  void write(const Endpoint& endpoint, int buffer) {
+    buffers_[endpoint] = buffer;
+    contents_[buffer] = endpoint;
+    sizes_[buffer] = bytes(64, 32, info(plan_.shape(endpoint).type).channels);
+  }
+
+  void expect_intact(const Endpoint& endpoint, const std::string& reader) {
+    const auto found = buffers_.find(endpoint);
+    ASSERT_NE(found, buffers_.end()) << reader << " reads " << graph_.describe(endpoint) << " after its release";
+    EXPECT_EQ(contents_[found->second], endpoint)
+        << reader << " reads " << graph_.describe(endpoint) << " after it was overwritten";
+  }
+
+  std::size_t alive_bytes() const {
+    std::set<int> alive;
+    for (const auto& [endpoint, buffer] : buffers_) alive.insert(buffer);
+    std::size_t sum = 0;
+    for (const int buffer : alive) sum += sizes_.at(buffer);
+    return sum;
+  }
+
+  const Plan& plan_;
+  const Graph& graph_;
+  int next_buffer_ = 0;
+  std::map<Endpoint, int> buffers_;   // of the values that are alive
+  std::map<int, Endpoint> contents_;  // what was written to a buffer last
+  std::map<int, std::size_t> sizes_;
+  std::size_t most_bytes_ = 0;
+};
+
+// Whether anybody needs the value after the frame, or a node that runs after position `after` in this frame.
+bool is_needed(const Plan& plan, const Endpoint& endpoint, std::size_t after) {
+  for (const GraphOutput& output : plan.graph->outputs)
+    if (output.from == endpoint) return true;
+  for (std::size_t i = 0; i < plan.nodes.size(); ++i)
+    for (const auto& port : plan.graph->nodes[static_cast<std::size_t>(plan.nodes[i].node)].inputs)
+      for (const Edge& edge : port) {
+        if (edge.from == endpoint && (edge.delay != 0 || i > after)) return true;
+        if (edge.initial.kind == Initial::Kind::endpoint && edge.initial.endpoint == endpoint && i > after) return true;
+      }
+  return false;
+}
+
+class RandomPlan : public testing::TestWithParam<bool> {};
+
+TEST_P(RandomPlan, NeverReadsWhatIsGoneAndCountsWhatIsThere) {
+  InputShapes inputs{{"color", image(64, 32)}};
+  if (GetParam()) inputs["depth"] = image(64, 32, QUELL_TYPE_DEPTH);
+  int planned_graphs = 0, in_place = 0, refused = 0;
+  for (unsigned seed = 0; seed < 600; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const auto graph = random_graph(seed);
+    Plan plan;
+    try {
+      plan = make_plan(graph, inputs);
+    } catch (const Error&) {
+      ++refused;
+      continue;
+    }
+    ++planned_graphs;
+    for (const PlannedNode& node : plan.nodes) in_place += node.in_place_of[0] >= 0;
+    Simulation simulation(plan);
+    simulation.run();
+    EXPECT_EQ(simulation.most_bytes(), plan.frame_bytes);
+
+    // Each value that is alive after a node is needed by somebody: released as early as can be.
+    for (std::size_t i = 0; i < plan.nodes.size(); ++i)
+      for (const Endpoint& endpoint : plan.nodes[i].last_uses) EXPECT_FALSE(is_needed(plan, endpoint, i));
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < plan.inputs.size(); ++i)
+      if (plan.input_used[i] && is_needed(plan, {-1, static_cast<int>(i), 0}, plan.nodes.size()))
+        kept += bytes(64, 32, info(plan.inputs[i].type).channels);
+    for (const PlannedNode& node : plan.nodes)
+      for (int port = 0; port < 2; ++port)
+        if (is_needed(plan, {node.node, port, 0}, plan.nodes.size()))
+          kept += bytes(64, 32, info(plan.shape({node.node, port, 0}).type).channels);
+    EXPECT_EQ(simulation.left_bytes(), kept);
+    if (testing::Test::HasFailure()) return;
+  }
+  // The graphs must be of a kind that tries what is tested.
+  EXPECT_GT(planned_graphs, 200);
+  EXPECT_GT(in_place, 100);
+  EXPECT_EQ(refused > 0, !GetParam()) << "only an absent input makes a graph impossible";
+}
+
+INSTANTIATE_TEST_SUITE_P(WithDepth, RandomPlan, testing::Bool(), [](const auto& depth) { return depth.param ? "Yes" : "No"; });
+
+}  // namespace
+}  // namespace quell::test
