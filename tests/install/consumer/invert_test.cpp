@@ -2,6 +2,7 @@
 
 #include "quell/testing/conformance.h"
 #include "quell/testing/pass_test.h"
+#include "quell/text/error.h"
 
 using namespace quell;
 
