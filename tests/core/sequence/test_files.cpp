@@ -70,7 +70,13 @@ ExrRead load_exr(const fs::path& file) {
     read.channels.push_back(spec.channelnames[static_cast<std::size_t>(c)] + ":" + spec.channelformat(c).c_str());
   read.pixels.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
                      static_cast<std::size_t>(spec.nchannels));
-  input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, read.pixels.data());
+  if (spec.channelformat(0) == OIIO::TypeUInt32) {  // as floats they would be scaled to 0..1
+    std::vector<std::uint32_t> integers(read.pixels.size());
+    input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeUInt32, integers.data());
+    std::copy(integers.begin(), integers.end(), read.pixels.begin());
+  } else {
+    input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, read.pixels.data());
+  }
   return read;
 }
 
