@@ -1,8 +1,7 @@
 // Scene-linear radiance to display-linear light in [0, 1].
-// Source:  Reinhard et al., "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002, equations 3 and 4; Narkowicz,
-// "ACES Filmic
-//          Tone Mapping Curve", 2015; OpenColorIO 2 for displays and views.
-// Departs: Reinhard's curve is applied to each channel, not to luminance: nothing leaves [0, 1], and bright colours pale.
+// Source:  Reinhard et al., "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002, equations 3 and 4;
+//          Narkowicz, "ACES Filmic Tone Mapping Curve", 2016; OpenColorIO 2 for displays and views.
+// Departs: Reinhard's curve is applied to each channel, not to luminance: nothing leaves [0, 1], and bright colors pale.
 // Cost:    a division or an exponential a channel; OpenColorIO by its view, plus a power a channel.
 #include <algorithm>
 #include <cmath>
@@ -54,17 +53,15 @@ const PassInfo kInfo{
     .id = "tonemap",
     .summary = "Scene-linear radiance to display-linear light",
     .doc =
-        "Scales by the exposure, applies a curve to each channel, and clips to [0, 1]; what is no number becomes 0. The result "
-        "is "
-        "linear light: encoded with the sRGB curve, as 8-bit pictures are written, it is what the display shows.\n\n"
-        "OpenColorIO's displays give code values. They are decoded with the inverse sRGB curve, so that a picture written from "
-        "the "
-        "result has exactly the display's code values.",
+        "Scales by the exposure, applies a curve to each channel, and clips to [0, 1]; what is no number becomes 0. The "
+        "result is linear light: encoded with the sRGB curve, as 8-bit pictures are written, it is what the display "
+        "shows.\n\n"
+        "OpenColorIO's displays give code values. They are decoded with the inverse sRGB curve, so that a picture written "
+        "from the result has exactly the display's code values.",
     .source =
         "Reinhard et al., SIGGRAPH 2002, equations 3 and 4 (on each channel). Narkowicz, \"ACES Filmic Tone Mapping Curve\", "
-        "2015, "
-        "https://knarkowicz.wordpress.com/2016/01/06/aces-filmic-tone-mapping-curve/. OpenColorIO 2, opencolorio.org. sRGB: IEC "
-        "61966-2-1.",
+        "2016, https://knarkowicz.wordpress.com/2016/01/06/aces-filmic-tone-mapping-curve/. OpenColorIO 2, opencolorio.org. "
+        "sRGB: IEC 61966-2-1.",
     .inputs = {{"color", kColor, "scene-linear radiance; Rec.709 primaries unless an OpenColorIO config says otherwise"}},
     .outputs = {{"color", kColor, "display-linear light, 0 to 1"}},
 };

@@ -1,10 +1,8 @@
 // Motion vectors from surface positions, cameras and object matrices: where was what this pixel shows, one frame ago?
-// Source:  p_prev = M_prev(id) inverse(M_cur(id)) p, projected by the previous frame's world-to-screen matrix; as taught in
-// GAMES202,
-//          lecture 12 (real-time ray tracing), "back projection", and long known from the reverse reprojection cache (Nehab et
-//          al., Graphics Hardware 2007, section 2).
+// Source:  p_prev = M_prev(id) inverse(M_cur(id)) p, projected by the previous frame's world-to-screen matrix: the back
+//          projection of GAMES202 (Real-Time High Quality Rendering, 2021), known from Nehab et al., Graphics Hardware 2007.
 // Departs: jitter is taken out of both positions, so that a scene at rest has motion 0 whatever the cameras' jitter.
-// Cost:    21 multiplications and 2 divisions in double a pixel; one 4x4 inverse for each object that moved.
+// Cost:    9 multiplications and 2 divisions in double a pixel; one 4x4 inverse for each object that moved.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,8 +22,8 @@ struct Params {
   void describe(auto&& field) {
     field("current", current,
           Choices{{"pixel_center",
-                   "the pixel's centre: centre + motion is exactly where the point was seen. Right when every sample went "
-                   "through its pixel's centre, and what the published method fetches by"},
+                   "the pixel's center: center + motion is exactly where the point was seen. Right when every sample went "
+                   "through its pixel's center, and what the published method fetches by"},
                   {"projected",
                    "the point itself, projected: what a renderer writes. Right when samples lie anywhere in their pixel, "
                    "since a scene at rest then has motion 0 instead of the sample's offset"}},
@@ -37,17 +35,14 @@ const PassInfo kInfo{
     .id = "back_project",
     .summary = "Motion vectors from positions, cameras and object matrices",
     .doc =
-        "Carries every surface point back to where it stood one frame ago (with its object, if that moved) and projects it with "
-        "the "
-        "previous camera. Objects that are not in both cameras' tables did not move. Pixels without surface, and all pixels "
-        "while "
-        "there is no previous camera, have motion 0. A point that lay behind the previous camera, that cannot be projected, or "
-        "that "
-        "moved by more than 1e6 pixels has motion (1e6, 1e6), which is off any screen.\n\n"
+        "Carries every surface point back to where it stood one frame ago (with its object, if that moved) and projects it "
+        "with the previous camera. Objects that are not in both cameras' tables did not move. Pixels without surface, and all "
+        "pixels while there is no previous camera, have motion 0. A point that lay behind the previous camera, that cannot be "
+        "projected, or that moved by more than 1e6 pixels has motion (1e6, 1e6), which is off any screen.\n\n"
         "Cameras of another resolution than the image are scaled to it. Jitter of the cameras is not part of the motion.",
     .source =
-        "GAMES202, lecture 12: Screen = P' V' M' inverse(M) world. Nehab et al., \"Accelerating Real-Time Shading with Reverse "
-        "Reprojection Caching\", Graphics Hardware 2007, section 2.",
+        "GAMES202 (Real-Time High Quality Rendering, 2021), back projection: screen = P' V' M' inverse(M) world. Nehab et "
+        "al., \"Accelerating Real-Time Shading with Reverse Reprojection Caching\", Graphics Hardware 2007.",
     .inputs = {{"position", kPosition, "world-space position of the surface in each pixel"},
                {"id", kId, "object of each pixel; without it every pixel is a surface, and nothing but the camera moves", true},
                {"camera", kCamera, "the camera of this frame, with the objects' matrices"},

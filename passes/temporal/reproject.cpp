@@ -1,7 +1,6 @@
 // Fetches last frame's image from where each pixel's surface was seen then.
-// Source:  the reverse reprojection cache (Nehab et al., Graphics Hardware 2007, sections 2 and 3: fetch with a tap test); the
-// object
-//          test is that of GAMES202, homework 5; taps that fail are left out as in SVGF (Schied et al., HPG 2017, section 4.1).
+// Source:  the reverse reprojection cache (Nehab et al., Graphics Hardware 2007); the object test is that of GAMES202,
+//          homework 5; taps that fail are left out as in SVGF (Schied et al., HPG 2017, temporal filtering).
 // Departs: the homework fetches by truncation; here that is one choice, and bilinear with a test of every tap is the default.
 // Cost:    4 gathered taps a channel (1 unless bilinear), and as many ids.
 #include <algorithm>
@@ -22,7 +21,7 @@ struct Params {
   void describe(auto&& field) {
     field("fetch", fetch,
           Choices{{"bilinear",
-                   "the four pixels around the point; those that fail the test are left out and the weights renormalised"},
+                   "the four pixels around the point; those that fail the test are left out and the weights renormalized"},
                   {"nearest", "the pixel that contains the point"},
                   {"truncate",
                    "the published listing: C's conversion to int, tested against the border afterwards. Like nearest, but "
@@ -35,15 +34,14 @@ const PassInfo kInfo{
     .id = "reproject",
     .summary = "Fetches the history from where each pixel was one frame ago",
     .doc =
-        "Looks up, for pixel (x, y), the history at (x + 0.5, y + 0.5) + motion. A pixel has no history (valid 0, color 0) where "
-        "that is off the screen or no number, where nothing was seen (id without object), where another object was seen (when "
-        "both "
-        "ids are given), and everywhere when the history is absent, as in the first frame.\n\n"
+        "Looks up, for pixel (x, y), the history at (x + 0.5, y + 0.5) + motion. A pixel has no history (valid 0, color 0) "
+        "where that is off the screen or no number, where nothing was seen (id without object), where another object was seen "
+        "(when both ids are given), and everywhere when the history is absent, as in the first frame.\n\n"
         "With bilinear, a point up to half a pixel off the screen still touches the border's pixels.",
     .source =
-        "Nehab et al., \"Accelerating Real-Time Shading with Reverse Reprojection Caching\", Graphics Hardware 2007; object test "
-        "and truncation: GAMES202, homework 5; taps left out: Schied et al., \"Spatiotemporal Variance-Guided Filtering\", HPG "
-        "2017, section 4.1.",
+        "Nehab et al., \"Accelerating Real-Time Shading with Reverse Reprojection Caching\", Graphics Hardware 2007; object "
+        "test and truncation: GAMES202, homework 5; taps left out: Schied et al., \"Spatiotemporal Variance-Guided "
+        "Filtering\", HPG 2017, temporal filtering.",
     .inputs = {{"history", kAnyFloatImage, "an image of the previous frame", true},
                {"motion", kMotion, "previous minus current position, pixels, y down"},
                {"id", kId, "object of each pixel", true},

@@ -1,8 +1,7 @@
-// Exponential average over time, the history first clamped to what its neighbourhood in the new frame makes plausible.
-// Source:  GAMES202, homework 5, "accumulate": alpha C + (1 - alpha) clamp(history, mu - k sigma, mu + k sigma); the clamp to
-// mean and
-//          deviation of a window is Salvi's ("An Excursion in Temporal Supersampling", GDC 2016, "variance clipping").
-// Departs: the homework takes the deviation about the centre pixel and divides by the full window also at the border; both are
+// Exponential average over time, the history first clamped to what its neighborhood in the new frame makes plausible.
+// Source:  GAMES202, homework 5: alpha C + (1 - alpha) clamp(history, mu - k sigma, mu + k sigma); the clamp to mean and
+//          deviation of a window is the variance clipping of Salvi, "An Excursion in Temporal Supersampling", GDC 2016.
+// Departs: the homework takes the deviation about the center pixel and divides by the full window also at the border; both are
 //          choices here, and by default the deviation is about the mean and the divisor the number of pixels that exist.
 // Cost:    2 (2r + 1) multiply-adds for each of the two separable sums, a channel; no branch a tap.
 #include <algorithm>
@@ -35,7 +34,7 @@ struct Params {
     field("clamp_k", clamp_k, Range<double>{0, 1e6}, "standard deviations", "Tolerated distance from the window's mean.");
     field("spread", spread,
           Choices{{"mean", "about the window's mean: the population standard deviation"},
-                  {"center", "about the centre pixel: the published listing"}},
+                  {"center", "about the center pixel: the published listing"}},
           "What the deviation is taken about.");
     field("count", count,
           Choices{{"existing", "by the number of the window's pixels that lie in the image"},
@@ -49,14 +48,11 @@ const PassInfo kInfo{
     .id = "temporal_blend",
     .summary = "Exponential average over time with neighborhood clamp",
     .doc =
-        "color = alpha color + (1 - alpha) clamp(history), for each channel by itself. Where the history is absent or not valid, "
-        "the "
-        "new color stands alone. After n frames of a scene at rest a first frame's share is (1 - alpha)^(n - 1), and the "
-        "variance of "
-        "the noise tends to alpha / (2 - alpha) of that of one frame.\n\n"
-        "The window's sums are taken in double: squares of floats are exact there, and the error of the deviation is below 1e-7 "
-        "of "
-        "the largest value in the window.",
+        "color = alpha color + (1 - alpha) clamp(history), for each channel by itself. Where the history is absent or not "
+        "valid, the new color stands alone. After n frames of a scene at rest a first frame's share is (1 - alpha)^(n - 1), "
+        "and the variance of the noise tends to alpha / (2 - alpha) of that of one frame.\n\n"
+        "The window's sums are taken in double: squares of floats are exact there, and the error of a 7x7 window's deviation "
+        "is below 1e-7 of the largest value in it.",
     .source =
         "GAMES202, homework 5 (accumulation, equations for mu, sigma and the clamp). Salvi, \"An Excursion in Temporal "
         "Supersampling\", GDC 2016.",

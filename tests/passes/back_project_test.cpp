@@ -24,7 +24,7 @@ Camera pinhole(double eye_x, double eye_y, double eye_z = 0, Size size = kSize) 
   return camera;
 }
 
-// A wall at z = kDistance, seen by pinhole(0, 0) through the pixels' centres, or `offset` pixels beside them.
+// A wall at z = kDistance, seen by pinhole(0, 0) through the pixels' centers, or `offset` pixels beside them.
 Image wall(Size size = kSize, double offset = 0) {
   return test_image(QUELL_TYPE_POSITION, size, [=](int x, int y, int c) {
     if (c == 2) return static_cast<float>(kDistance);
@@ -170,7 +170,7 @@ TEST(BackProject, SendsObjectsWithASingularMatrixFarAway) {
 }
 
 TEST(BackProject, StartsFromThePixelsCenterOrFromThePoint) {
-  // The samples lie 0.25 pixels right of and below the centres.
+  // The samples lie 0.25 pixels right of and below the centers.
   PassTest pass("back_project");
   pass.input("position", wall(kSize, 0.25));
   pass.input("camera", pinhole(0, 0));
@@ -192,7 +192,7 @@ TEST(BackProject, LeavesJitterOutOfTheMotion) {
     }
     return camera;
   };
-  // With the screen 0.25 px to the right, the sample in a pixel's centre is that of 0.25 px to the left without jitter.
+  // With the screen 0.25 px to the right, the sample in a pixel's center is that of 0.25 px to the left without jitter.
   PassTest pass("back_project");
   pass.input("position", wall(kSize, -0.25));
   pass.input("camera", jittered(0.25, 0.25));

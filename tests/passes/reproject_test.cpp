@@ -187,7 +187,7 @@ TEST(Reproject, DoesNotSpreadWhatIsNoNumberToPixelsThatDoNotFetchIt) {
   Image history = color();
   history.writable_floats().at(10, 8) = kNan;
   history.writable_floats().at(20, 8) = kInfinity;
-  PassTest pass = make("bilinear", history, motion(1, 0));  // a weight of 0 falls on the neighbours
+  PassTest pass = make("bilinear", history, motion(1, 0));  // a weight of 0 falls on the neighbors
   pass.run();
   for (int x = 0; x < kSize.width - 1; ++x) EXPECT_EQ(std::isfinite(pass.output("color").at(x, 8)), x != 9 && x != 19) << x;
 }
