@@ -23,6 +23,7 @@ function(quell_add_plugin plugin)
     target_link_libraries(${plugin} PRIVATE quell_flags)
   endif()
   install(TARGETS ${plugin} LIBRARY DESTINATION ${QUELL_PASSES_DIR})
+  set_property(GLOBAL APPEND PROPERTY QUELL_PLUGINS ${plugin})
 endfunction()
 
 # quell_add_pass(PLUGIN PASS [SOURCES file...] [LINK target...] [TEST file]): adds a pass to a plugin. PASS.cpp and the further

@@ -1,0 +1,47 @@
+// Every graph that ships loads, plans and runs, on made-up frames of a size that fits no vector.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "quell/runtime/session.h"
+#include "quell/testing/synthetic.h"
+
+namespace quell {
+namespace {
+
+std::vector<std::filesystem::path> shipped_graphs() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(QUELL_SOURCE_DIR "/graphs"))
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  return files;
+}
+
+class ShippedGraph : public ::testing::TestWithParam<std::filesystem::path> {};
+
+TEST_P(ShippedGraph, RunsOverFramesAndStaysFinite) {
+  const Registry passes = load_plugins();
+  const auto graph = load_graph(GetParam(), passes);
+  EXPECT_FALSE(graph->doc.empty()) << "a graph says what it does and where it comes from";
+  Session session(graph);
+  for (std::int64_t frame = 0; frame < 3; ++frame) {
+    std::map<std::string, Item> inputs;
+    for (const GraphInput& input : graph->inputs)
+      inputs[input.name] = synthetic(input.type, {37, 29}, static_cast<std::uint32_t>(frame));
+    for (const auto& [name, item] : session.push(frame, inputs)) {
+      if (!item.image() || item.image()->type() == QUELL_TYPE_ID) continue;
+      const FloatImage image = item.image()->floats();
+      for (int c = 0; c < image.channels; ++c)
+        for (int y = 0; y < image.height; ++y)
+          for (int x = 0; x < image.width; ++x) ASSERT_TRUE(std::isfinite(image.at(x, y, c))) << name << " at " << x << ", " << y;
+    }
+  }
+}
+
+TEST(ShippedGraphs, AreThere) { EXPECT_FALSE(shipped_graphs().empty()); }
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedGraph, ::testing::ValuesIn(shipped_graphs()),
+                         [](const auto& file) { return file.param.stem().string(); });
+
+}  // namespace
+}  // namespace quell
