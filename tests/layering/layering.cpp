@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <map>
-#include <regex>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -47,6 +47,25 @@ std::string box_of(const std::string& file) {
   return file.substr(0, file.find('/', first + 1));
 }
 
+struct Include {
+  std::string path;
+  bool quoted;
+};
+
+/// The include that a line makes, if it makes one.
+std::optional<Include> parse_include(std::string_view line) {
+  const auto skip = [&](std::string_view word) {
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    if (line.substr(0, word.size()) != word) return false;
+    line.remove_prefix(word.size());
+    return true;
+  };
+  if (!skip("#") || !skip("include")) return std::nullopt;
+  const bool quoted = skip("\"");
+  if (!quoted && !skip("<")) return std::nullopt;
+  return Include{std::string(line.substr(0, line.find_first_of("\">"))), quoted};
+}
+
 std::string fault_in_quoted(const std::string& file, const std::string& box, const std::string& path) {
   const Names& allowed = kMayInclude.at(box);
   if (path.find("..") != std::string::npos) return "paths go down from the root or stay in their folder, never up";
@@ -75,18 +94,17 @@ std::string fault_in_angle(const std::string& box, const std::string& path) {
 }  // namespace
 
 std::vector<std::string> find_bad_includes(const std::string& file, std::string_view text) {
-  static const std::regex kInclude(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
   const std::string box = box_of(file);
   if (!kMayInclude.count(box)) return {file + ":1: the folder " + box + " has no place in the layering"};
   std::vector<std::string> faults;
   std::istringstream lines{std::string(text)};
-  std::smatch match;
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
-    if (!std::regex_match(line, match, kInclude)) continue;
-    const std::string fault = match[1] == "<" ? fault_in_angle(box, match[2]) : fault_in_quoted(file, box, match[2]);
-    if (!fault.empty()) faults.push_back(file + ":" + std::to_string(number) + ": " + match.str() + ": " + fault);
+    const std::optional<Include> include = parse_include(line);
+    if (!include) continue;
+    const std::string fault = include->quoted ? fault_in_quoted(file, box, include->path) : fault_in_angle(box, include->path);
+    if (!fault.empty()) faults.push_back(file + ":" + std::to_string(number) + ": " + line + ": " + fault);
   }
   return faults;
 }
