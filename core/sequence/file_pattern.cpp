@@ -111,8 +111,8 @@ std::optional<FilePattern> FilePattern::parse(std::string_view text, const std::
     if (text.find('/', counter.offset) != std::string_view::npos)
       scanner.fail(counter.offset, "the frame number must be in the file's name, not in a folder's");
     const std::size_t slash = scanner.literal[0].rfind('/');  // npos + 1 is 0
-    const std::filesystem::path folder = base / scanner.literal[0].substr(0, slash + 1);
-    FilePattern pattern(folder.lexically_normal(), scanner.literal[0].substr(slash + 1), counter.digits, scanner.literal[1]);
+    const std::filesystem::path folder = (base / scanner.literal[0]).parent_path();
+    FilePattern pattern(folder, scanner.literal[0].substr(slash + 1), counter.digits, scanner.literal[1]);
     pattern.sign_counts_ = counter.sign_counts;
     pattern.name_ = text.substr(text.rfind('/') + 1);
     return pattern;

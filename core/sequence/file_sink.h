@@ -23,7 +23,8 @@ enum class FileFormat { exr, png };
 PixelType parse_pixel_type(std::string_view text);
 /// "exr" or "png". Throws Error(usage) naming `--format`.
 FileFormat parse_file_format(std::string_view text);
-/// What OpenEXR can compress with: "none", "rle", "zips", "zip", "piz", ...
+/// What OpenEXR can compress with: "none", "rle", "zips", "zip", "piz", ... (dwaa and dwab are for color: OpenImageIO writes
+/// images of fewer than three channels with zip instead).
 const std::vector<std::string>& exr_compressions();
 
 struct FileSinkOptions {
