@@ -21,11 +21,7 @@ struct Result {
 
 std::vector<Result> find_results(const Plan& plan) {
   std::vector<Result> results;
-  for (const int output : plan.outputs) {
-    const GraphOutput& out = plan.graph->outputs[static_cast<std::size_t>(output)];
-    results.push_back({out.name, plan.graph->type(out.from)});
-  }
-  for (const Endpoint& dump : plan.dumps) results.push_back({plan.graph->describe(dump), plan.graph->type(dump)});
+  for (const PlannedResult& result : plan.results()) results.push_back({result.name, plan.graph->type(result.from)});
   return results;
 }
 

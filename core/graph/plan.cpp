@@ -108,6 +108,17 @@ Shape Plan::shape(const Endpoint& endpoint) const {
   return found->outputs[static_cast<std::size_t>(endpoint.port)][static_cast<std::size_t>(endpoint.item)];
 }
 
+std::vector<PlannedResult> Plan::results() const {
+  std::vector<PlannedResult> all;
+  for (const int index : outputs) {
+    const GraphOutput& output = graph->outputs[static_cast<std::size_t>(index)];
+    all.push_back({output.name, output.from});
+  }
+  // A graph input may have the name of an output, as `color` often does.
+  for (const Endpoint& dump : dumps) all.push_back({(dump.node < 0 ? "input." : "") + graph->describe(dump), dump});
+  return all;
+}
+
 Plan make_plan(std::shared_ptr<const Graph> graph, const InputShapes& inputs, const std::vector<std::string>& dumps) {
   Plan plan;
   plan.graph = std::move(graph);

@@ -38,6 +38,12 @@ struct PlannedLoop {
   int delay = 0;           ///< smallest sum of delays around a cycle through the loop
 };
 
+/// Something that is handed to the sink, and the name under which it is.
+struct PlannedResult {
+  std::string name;  ///< of the graph output; of a dump "node.port", or "input.color" for the graph input `color`
+  Endpoint from;
+};
+
 struct Plan {
   std::shared_ptr<const Graph> graph;
   std::vector<Shape> inputs;       ///< of each graph input; present is false for an optional one that the source lacks
@@ -54,6 +60,8 @@ struct Plan {
 
   /// Shape of what an endpoint carries; present is false when it is never there.
   Shape shape(const Endpoint& endpoint) const;
+  /// The outputs, then the dumps.
+  std::vector<PlannedResult> results() const;
 };
 
 using InputShapes = std::map<std::string, std::optional<Shape>, std::less<>>;

@@ -26,7 +26,8 @@ class FrameSource {
 class FrameSink {
  public:
   virtual ~FrameSink() = default;
-  /// `output` is the name of a graph output, or "node.port" of an inner image asked for. Throws Error when it cannot be written.
+  /// `output` is the name of a graph output, or "node.port" of an inner image that was asked for ("input.color" for a graph
+  /// input). Throws Error when it cannot be written.
   virtual void write(std::string_view output, std::int64_t frame, const Item& item) = 0;
 };
 

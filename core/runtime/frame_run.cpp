@@ -37,11 +37,7 @@ FrameResult FrameRun::compute(std::int64_t frame, std::vector<Item> inputs, cons
     run_step(step, frame, values, ahead);
     result.node_seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
-  for (const int output : plan_.outputs) {
-    const GraphOutput& out = plan_.graph->outputs[static_cast<std::size_t>(output)];
-    result.outputs.emplace_back(out.name, values.get(out.from));
-  }
-  for (const Endpoint& dump : plan_.dumps) result.outputs.emplace_back(plan_.graph->describe(dump), values.get(dump));
+  for (const PlannedResult& out : plan_.results()) result.outputs.emplace_back(out.name, values.get(out.from));
   keep_history(frame, values);
   return result;
 }

@@ -16,7 +16,7 @@ namespace quell {
 
 /// A computed frame.
 struct FrameResult {
-  std::vector<std::pair<std::string, Item>> outputs;  ///< graph outputs by name, then dumps by "node.port"
+  std::vector<std::pair<std::string, Item>> outputs;  ///< as Plan::results() names them
   std::vector<double> node_seconds;                   ///< in the order of Plan::nodes
 };
 

@@ -26,7 +26,7 @@ struct FrameReport {
 
 struct SessionOptions {
   int threads = 0;                      ///< 0: as many as this process may use
-  std::vector<std::string> dumps = {};  ///< inner images ("node.port") that are handed out beside the outputs
+  std::vector<std::string> dumps = {};  ///< inner images ("node.port", or a graph input) handed out beside the outputs
   std::function<void(int level, const std::string& message)> log = {};  ///< levels QUELL_LOG_*; from any thread
   std::function<bool()> cancelled = {};                                 ///< asked often, from any thread
   std::function<void(const FrameReport&)> on_frame = {};                ///< after each frame of run(), in order

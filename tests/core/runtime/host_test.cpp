@@ -13,7 +13,7 @@ namespace {
 struct Chunks {
   std::mutex mutex;
   std::vector<std::pair<std::int64_t, std::int64_t>> bounds;
-  std::int64_t failing = -1;
+  std::int64_t failing = -10;
 };
 
 quell_status record(void* context, std::int64_t chunk, std::int64_t begin, std::int64_t end, std::uint32_t) {

@@ -123,7 +123,8 @@ TEST(Session, HandsOutInnerImagesWhenAsked) {
                   {.dumps = {"soft.color", "color"}});
   session.run({3}, source, sink);
   EXPECT_EQ(sink.pixel("soft.color", 3), 3.0F);
-  EXPECT_EQ(sink.pixel("color", 3), 3.0F);
+  EXPECT_EQ(sink.pixel("input.color", 3), 3.0F);
+  EXPECT_EQ(sink.items.size(), 3U);
 }
 
 // A noisy picture, so that any difference in rounding or order would show.
