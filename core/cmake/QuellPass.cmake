@@ -1,4 +1,4 @@
-# How plugins are built, in quell's own tree and, through find_package(quell), in anybody's. passes/README.md shows the whole of it.
+# How plugins are built, in quell's own tree and, through find_package(quell), in anybody's. passes/README.md shows all of it.
 #
 #   quell_add_plugin(PLUGIN)                                  one shared object: PLUGIN.so
 #   quell_add_pass(PLUGIN PASS [SOURCES file...] [LINK target...] [TEST file])

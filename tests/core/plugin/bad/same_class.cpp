@@ -1,5 +1,4 @@
-// A pass whose class and parameters have names of their own in no unnamed namespace, as two authors might choose them alike. Built
-// twice, with another ID.
+// A pass whose class lies in no unnamed namespace, so that two authors may choose the same names. Built twice, with another ID.
 #include "quell/sdk/pass.h"
 
 namespace somebody {
