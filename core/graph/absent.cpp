@@ -66,9 +66,7 @@ class Pruner {
         std::vector<Note> notes = leaf.scope->included_from();
         notes.push_back({written.from.where, "the output '" + written.name.text + "' depends on it"});
         errors.error(next->edge.where,
-                     "'" + leaf.name +
-                         "' needs this, but it comes from an optional input of the graph that is not connected where "
-                         "the graph is used",
+                     "this optional input is not connected where the graph is used, but '" + leaf.name + "' needs it",
                      std::move(notes));
         return;
       }

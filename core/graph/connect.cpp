@@ -28,17 +28,22 @@ class Connector {
  private:
   void connect_leaf(Leaf& leaf) {
     const Scope& scope = *leaf.scope;
+    std::vector<std::string> misspelt;
     for (const WrittenPort& port : leaf.written->in) {
       std::vector<Arrival> arrivals;
       for (const WrittenEdge& edge : port.edges) arrivals.push_back(resolver_.resolve(scope, edge));
-      const int index = leaf.pass ? find_input(leaf, port.name) : -1;
-      if (index < 0) continue;
+      if (!leaf.pass) continue;
+      const int index = find_input(leaf, port.name);
+      if (index < 0) {
+        misspelt.push_back(port.name.text);
+        continue;
+      }
       const quell_port_desc& desc = leaf.input(static_cast<std::size_t>(index));
       if (!has_right_form(scope, port, desc, leaf) || port.is_broken) arrivals.assign(1, Arrival());
       for (const Arrival& arrival : arrivals) check_none(scope, arrival, desc, leaf);
       leaf.inputs[static_cast<std::size_t>(index)] = std::move(arrivals);
     }
-    if (leaf.pass) require_inputs(leaf);
+    if (leaf.pass) require_inputs(leaf, misspelt);
   }
 
   int find_input(const Leaf& leaf, const Text& name) {
@@ -75,11 +80,11 @@ class Connector {
                   scope.included_from());
   }
 
-  void require_inputs(const Leaf& leaf) {
+  void require_inputs(const Leaf& leaf, const std::vector<std::string>& misspelt) {
     std::vector<std::string> missing;
     for (std::uint32_t i = 0; i < leaf.pass->input_count; ++i) {
       const quell_port_desc& desc = leaf.input(i);
-      if (!(desc.flags & QUELL_PORT_OPTIONAL) && leaf.inputs[i].empty())
+      if (!(desc.flags & QUELL_PORT_OPTIONAL) && leaf.inputs[i].empty() && !is_meant(desc.name, misspelt))
         missing.push_back(std::string(desc.name) + "' (" + describe(Types{desc.types}));
     }
     tell_missing(leaf.written->name, *leaf.scope, missing);
@@ -108,11 +113,14 @@ class Connector {
   }
 
   void connect_subgraph(const Scope& scope, const WrittenNode& node, const Scope& inner) {
-    for (const WrittenPort& port : node.in) cross(scope, port, inner);
-    std::vector<std::string> missing;
+    std::vector<std::string> missing, misspelt;
+    for (const WrittenPort& port : node.in) {
+      cross(scope, port, inner);
+      if (inner.find_input(port.name.text) < 0) misspelt.push_back(port.name.text);
+    }
     for (const GraphInput& input : inner.document->inputs) {
       const auto is_it = [&](const WrittenPort& port) { return port.name.text == input.name; };
-      if (!input.optional && std::none_of(node.in.begin(), node.in.end(), is_it))
+      if (!input.optional && std::none_of(node.in.begin(), node.in.end(), is_it) && !is_meant(input.name, misspelt))
         missing.push_back(input.name + "' (" + std::string(name(input.type)));
     }
     tell_missing(node.name, scope, missing);

@@ -49,7 +49,10 @@ class Reader {
   }
 
   const Json* required(const Json& root, const Fields& fields, const std::string& key, const std::string& content) {
-    if (!fields.any(key)) errors_.error(root.where, "the key \"" + key + "\" is missing; a graph has " + content);
+    std::vector<std::string> keys;
+    for (const JsonMember& member : root.members) keys.push_back(member.key);
+    if (!fields.any(key) && !is_meant(key, keys))
+      errors_.error(root.where, "the key \"" + key + "\" is missing; a graph has " + content);
     const Json* value = fields.find(key, Json::Kind::object);
     if (value && value->members.empty()) errors_.error(value->where, "\"" + key + "\" is empty; a graph has " + content);
     return value;
@@ -61,19 +64,22 @@ class Reader {
       GraphInput input;
       input.name = member.key, input.where = member.where;
       expect_name(member, "an input", errors_);
+      bool is_known = false;
       if (member.value.kind == Json::Kind::object) {
         const Fields fields(member.value, "an input", {"type", "optional", "doc"}, errors_);
         input.optional = fields.flag("optional");
         input.doc = fields.text_or_empty("doc");
         if (!fields.any("type")) errors_.error(member.value.where, "the key \"type\" is missing" + suggest("", type_names()));
-        if (const Json* type = fields.find("type", Json::Kind::string)) read_type(*type, input);
+        const Json* type = fields.find("type", Json::Kind::string);
+        is_known = type && read_type(*type, input);
       } else if (member.value.kind == Json::Kind::string) {
-        read_type(member.value, input);
+        is_known = read_type(member.value, input);
       } else {
         errors_.error(member.value.where,
                       "an input must be the name of a type, or an object with \"type\", not " + excerpt(member.value));
       }
       document_.inputs.push_back(std::move(input));
+      document_.broken_inputs.push_back(!is_known);
     }
   }
 
@@ -82,11 +88,11 @@ class Reader {
     for (int type = 0; type < QUELL_TYPE_COUNT; ++type) names.emplace_back(name(static_cast<PortType>(type)));
     return names;
   }
-  void read_type(const Json& value, GraphInput& input) {
-    if (const std::optional<PortType> type = port_type(value.string))
-      input.type = *type;
-    else
-      errors_.error(value.where, "unknown type '" + value.string + "'" + suggest(value.string, type_names()));
+  bool read_type(const Json& value, GraphInput& input) {
+    const std::optional<PortType> type = port_type(value.string);
+    input.type = type.value_or(input.type);
+    if (!type) errors_.error(value.where, "unknown type '" + value.string + "'" + suggest(value.string, type_names()));
+    return type.has_value();
   }
 
   void read_params(const Json* params) {
@@ -112,7 +118,7 @@ class Reader {
   void read_outputs(const Json& outputs) {
     for (const JsonMember& member : outputs.members) {
       expect_name(member, "an output", errors_);
-      if (expect(member.value, Json::Kind::string, "the source of an output", errors_))
+      if (expect(member.value, Json::Kind::string, "the source of an output, \"node.port\",", errors_))
         document_.outputs.push_back({{member.key, member.where}, {member.value.string, member.value.where}});
     }
   }

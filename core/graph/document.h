@@ -77,6 +77,7 @@ struct Document {
   std::string name;
   std::string doc;
   std::vector<GraphInput> inputs;
+  std::vector<bool> broken_inputs;  ///< for each input: its type is not known, which was told
   std::vector<WrittenParam> params;
   std::vector<WrittenNode> nodes;
   std::vector<WrittenOutput> outputs;

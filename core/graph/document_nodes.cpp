@@ -41,20 +41,25 @@ std::optional<WrittenInitial> read_initial(const Json& value, Diagnostics& error
   return initial;
 }
 
+bool read_delay(const Fields& fields, WrittenEdge& edge, Diagnostics& errors) {
+  const Json* delay = fields.find("delay", Json::Kind::integer);
+  if (!delay) return false;
+  edge.delay_where = delay->where;
+  edge.delay = static_cast<int>(std::clamp(delay->integer, -kLongestDelay, kLongestDelay));
+  if (edge.delay == delay->integer) return true;
+  errors.error(delay->where,
+               "a delay of " + excerpt(*delay) + " frames is too long; the most is " + std::to_string(kLongestDelay));
+  return false;
+}
+
 std::optional<WrittenEdge> read_delayed_edge(const Json& value, Diagnostics& errors) {
   const Fields fields(value, "an edge", {"from", "delay", "initial"}, errors);
   WrittenEdge edge;
   edge.where = value.where, edge.delay_where = value.where;
   const std::optional<Text> from = fields.text("from");
   if (!fields.any("from")) errors.error(value.where, "the key \"from\" is missing; expected the source, \"from\": \"node.port\"");
-  if (const Json* delay = fields.find("delay", Json::Kind::integer)) {
-    edge.delay_where = delay->where;
-    if (delay->integer > kLongestDelay || delay->integer < -kLongestDelay)
-      errors.error(delay->where, "a delay of " + excerpt(*delay) + " frames is too long; the most is 10000");
-    else
-      edge.delay = static_cast<int>(delay->integer);
-  }
-  bool is_whole = from.has_value();
+  bool is_whole = from.has_value() && !fields.has_unknown();
+  if (fields.any("delay")) is_whole = read_delay(fields, edge, errors) && is_whole;
   if (const Json* initial = fields.any("initial")) {
     edge.initial = read_initial(*initial, errors);
     is_whole = is_whole && edge.initial;

@@ -18,6 +18,10 @@ std::string suggest(std::string_view misspelt, const std::vector<std::string>& n
   return close.empty() ? "; expected " + list_names(names) : close;
 }
 
+bool is_meant(const std::string& name, const std::vector<std::string>& misspelt) {
+  return std::any_of(misspelt.begin(), misspelt.end(), [&](const std::string& other) { return !nearest(other, {name}).empty(); });
+}
+
 bool expect(const Json& value, Json::Kind kind, std::string_view what, Diagnostics& errors) {
   if (value.kind == kind) return true;
   errors.error(value.where, std::string(what) + " must be " + std::string(describe(kind)) + ", not " + excerpt(value));
@@ -34,8 +38,10 @@ bool expect_name(const JsonMember& member, std::string_view what, Diagnostics& e
 Fields::Fields(const Json& object, std::string what, const std::vector<std::string>& keys, Diagnostics& errors)
     : object_(object), errors_(errors) {
   for (const JsonMember& member : object.members)
-    if (std::find(keys.begin(), keys.end(), member.key) == keys.end())
+    if (std::find(keys.begin(), keys.end(), member.key) == keys.end()) {
+      has_unknown_ = true;
       errors.error(member.where, "unknown key '" + member.key + "' in " + what + suggest(member.key, keys));
+    }
 }
 
 const Json* Fields::find(std::string_view key, Json::Kind kind) const {

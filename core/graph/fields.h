@@ -13,6 +13,9 @@ namespace quell::detail {
 /// "; did you mean 'sigma'?", or all names when none is close: "; expected 'a', 'b' or 'c'", or `none` when there are no names.
 std::string suggest(std::string_view misspelt, const std::vector<std::string>& names, std::string_view none = "");
 
+/// Whether one of the misspelt names is close to this one.
+bool is_meant(const std::string& name, const std::vector<std::string>& misspelt);
+
 /// Whether the value is of that kind; an error if not.
 bool expect(const Json& value, Json::Kind kind, std::string_view what, Diagnostics& errors);
 
@@ -25,6 +28,7 @@ class Fields {
   /// `what` names the object in messages: "a node".
   Fields(const Json& object, std::string what, const std::vector<std::string>& keys, Diagnostics& errors);
 
+  bool has_unknown() const { return has_unknown_; }
   const Json* any(std::string_view key) const { return object_.find(key); }
   /// Null when there is no such key, or when its value is of another kind, which is told.
   const Json* find(std::string_view key, Json::Kind kind) const;
@@ -35,6 +39,7 @@ class Fields {
  private:
   const Json& object_;
   Diagnostics& errors_;
+  bool has_unknown_ = false;
 };
 
 }  // namespace quell::detail

@@ -46,15 +46,18 @@ Arrival Resolver::resolve(const Scope& scope, const Text& source) {
     return tell(scope, source.where,
                 "'" + source.text + "' is a node; expected one of its outputs" + (ports.empty() ? "" : ", " + list_names(ports)));
   }
-  std::vector<std::string> names = scope.node_names();
-  for (const GraphInput& other : scope.document->inputs) names.push_back(other.name);
+  std::vector<std::string> inputs, names = scope.node_names();
+  for (const GraphInput& other : scope.document->inputs) inputs.push_back(other.name);
+  names.insert(names.end(), inputs.begin(), inputs.end());
+  const std::string close = did_you_mean(name, names);
+  inputs.emplace_back("node.port");
   return tell(scope, source.where,
-              "there is no input '" + source.text + "' of the graph" + did_you_mean(name, names) +
-                  (nearest(name, names).empty() ? "; expected an input of the graph or 'node.port'" : ""));
+              "the graph has no input '" + source.text + "'" + (close.empty() ? "; expected " + list_names(inputs) : close));
 }
 
 Arrival Resolver::from_input(const Scope& scope, int input) {
   Arrival arrival;
+  if (scope.document->broken_inputs[static_cast<std::size_t>(input)]) return arrival;
   if (!scope.parent) {
     arrival.state = Arrival::State::connected;
     arrival.edge.from = {-1, input, 0};
@@ -64,6 +67,7 @@ Arrival Resolver::from_input(const Scope& scope, int input) {
   const auto port = std::find_if(scope.node->in.begin(), scope.node->in.end(),
                                  [&](const WrittenPort& other) { return other.name.text == declared.name; });
   if (port == scope.node->in.end()) {
+    arrival.type = declared.type;
     if (declared.optional) arrival.state = Arrival::State::absent, arrival.initial_where = declared.where;
     return arrival;
   }
@@ -173,14 +177,14 @@ Arrival Resolver::delay(const Scope& scope, const WrittenEdge& edge, Arrival arr
   if (arrival.state == Arrival::State::connected && edge.delay < 0 && arrival.edge.from.node >= 0)
     return tell(
         scope, edge.delay_where,
-        "only inputs of the graph can be looked ahead of; '" + edge.from.text + "' is computed: expected a positive delay");
+        "only inputs of the graph can be read ahead of time, and '" + edge.from.text + "' is computed; expected a delay above 0");
   const int before = arrival.edge.delay;
   const Initial& outer = arrival.edge.initial;
   const bool is_same = outer.kind == initial.kind && outer.kind != Initial::Kind::endpoint && outer.constant == initial.constant;
   if (before != 0 && ((before > 0) != (edge.delay > 0) || !is_same))
     return tell(scope, edge.where,
                 "'" + edge.from.text + "' is delayed by " + std::to_string(before) +
-                    " already where this graph is used; a second delay must have the same sign and the same "
+                    " frames already where this graph is used; a second delay must have the same sign and the same "
                     "initial value, \"none\" or a constant");
   arrival.edge.delay += edge.delay;
   arrival.edge.initial = std::move(initial);

@@ -30,6 +30,7 @@ class Unfolder {
     if (!document) return nullptr;
     result_->root.document = &*document;
     fill(result_->root, {{key, source->name}});
+    if (node_count_ > kMostNodes) return nullptr;
     return std::move(result_);
   }
 
@@ -42,18 +43,20 @@ class Unfolder {
 
   void fill(Scope& scope, const Chain& chain) {
     for (const WrittenNode& node : scope.document->nodes) {
+      if (++node_count_ > kMostNodes) return tell_too_many();
       Child& child = scope.children[node.name.text];
       if (node.graph) {
         child.scope = include(scope, node, chain);
-      } else if (result_->leaves.size() < kMostNodes) {
+      } else {
         child.leaf = static_cast<int>(result_->leaves.size());
         result_->leaves.push_back(make_leaf(scope, node));
-      } else {
-        errors_.error(result_->root.document->nodes.front().name.where,
-                      "the graph has more than " + std::to_string(kMostNodes) + " nodes, those of its subgraphs included");
-        return;
       }
     }
+  }
+
+  void tell_too_many() {
+    errors_.error(result_->root.document->nodes.front().name.where,
+                  "the graph has more than " + std::to_string(kMostNodes) + " nodes, those of its subgraphs included");
   }
 
   std::unique_ptr<Scope> include(const Scope& scope, const WrittenNode& node, Chain chain) {
@@ -68,7 +71,7 @@ class Unfolder {
       return nullptr;
     }
     const std::optional<Document>& document = load(file, key, *node.graph, scope);
-    if (!document || result_->leaves.size() >= kMostNodes) return nullptr;
+    if (!document) return nullptr;
     auto inner = std::make_unique<Scope>();
     inner->document = &*document;
     inner->prefix = scope.prefix + node.name.text + ".";
@@ -82,7 +85,10 @@ class Unfolder {
     if (!is_new) return it->second;
     try {
       it->second = read_document(read_text(file, Fault::usage), errors_);
-    } catch (const Error& error) { errors_.error(named.where, "the graph " + std::string(error.what()), scope.included_from()); }
+    } catch (const Error& error) {
+      const std::string reason = std::string(error.what()).substr(error.where().size() + 2);  // behind "file: "
+      errors_.error(named.where, "the graph '" + file.string() + "' " + reason, scope.included_from());
+    }
     return it->second;
   }
 
@@ -127,6 +133,7 @@ class Unfolder {
   const Registry& passes_;
   Diagnostics& errors_;
   std::unique_ptr<Unfolded> result_ = std::make_unique<Unfolded>();
+  std::size_t node_count_ = 0;
   bool was_told_of_folders_ = false;
 };
 

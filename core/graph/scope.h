@@ -80,7 +80,8 @@ struct Unfolded {
   std::vector<Leaf> leaves;  ///< in the order of the files
 };
 
-/// Reads the graph and every graph that it includes, and looks up the passes. Nothing when the graph itself is unreadable.
+/// Reads the graph and every graph that it includes, and looks up the passes. Nothing when the graph itself is
+/// unreadable, or too large.
 std::unique_ptr<Unfolded> unfold(const SourceTextPtr& source, const Registry& passes, Diagnostics& errors);
 
 }  // namespace quell::detail

@@ -12,6 +12,11 @@ std::vector<std::string> own_params(const Scope& scope) {
   return names;
 }
 
+// In messages.
+std::string name_of(const Scope& scope) {
+  return scope.parent ? "the graph '" + scope.prefix.substr(0, scope.prefix.size() - 1) + "'" : "the graph";
+}
+
 std::uint32_t version_of(const Leaf& leaf) { return leaf.written->version.value_or(leaf.pass->version); }
 
 }  // namespace
@@ -71,10 +76,13 @@ std::vector<Settings::Slot> Settings::find_own(const Scope& scope, const Text& t
       for (const Slot& slot : find(scope, inner, inner.text)) slots.push_back(slot);
     return slots;
   }
-  const std::string whose = scope.parent ? "the graph '" + scope.prefix.substr(0, scope.prefix.size() - 1) + "'" : "the graph";
-  const std::string others = suggest(name, own_params(scope), "; it has none");
-  const std::string hint = scope.parent ? "" : "; a parameter of a node is written 'node.param'";
-  errors_.error(target.where, whose + " has no parameter '" + std::string(name) + "'" + others + hint, notes_);
+  std::vector<std::string> names = own_params(scope);
+  const std::string close = did_you_mean(name, names);
+  if (!scope.parent) names.emplace_back("node.param");
+  errors_.error(target.where,
+                name_of(scope) + " has no parameter '" + std::string(name) + "'" +
+                    (close.empty() ? suggest("", names, "; it has none") : close),
+                notes_);
   return {};
 }
 
@@ -88,7 +96,7 @@ std::vector<Settings::Slot> Settings::find(const Scope& scope, const Text& targe
   }
   const WrittenNode* node = scope.find_node(name);
   if (!node) {
-    errors_.error(target.where, "there is no node '" + scope.prefix + std::string(name) + "'" + suggest(name, scope.node_names()),
+    errors_.error(target.where, name_of(scope) + " has no node '" + std::string(name) + "'" + suggest(name, scope.node_names()),
                   notes_);
     return {};
   }

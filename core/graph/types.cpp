@@ -61,15 +61,15 @@ class Checker {
     const int channels = info(type).channels;
     const auto is_id = [](double value) { return value >= 0 && value <= double{QUELL_NO_ID} && std::trunc(value) == value; };
     if (type == QUELL_TYPE_CAMERA) {
-      tell("a camera has no constant; expected \"none\" or {\"from\": \"node.port\"}");
+      tell("there are no constants of type camera; expected \"none\" or {\"from\": \"node.port\"}");
     } else if (constant.empty() ||
                (channels > 0 && constant.size() != 1 && constant.size() != static_cast<std::size_t>(channels))) {
-      const std::string count = channels > 1    ? "1 or " + std::to_string(channels) + " values"
-                                : channels == 1 ? "1 value"
-                                                : "values";
-      tell("a constant " + std::string(name(type)) + " has " + count + ", got " + std::to_string(constant.size()));
+      const std::string count = channels > 1    ? "1 or " + std::to_string(channels) + " numbers"
+                                : channels == 1 ? "1 number"
+                                                : "at least 1 number";
+      tell("a constant of type " + std::string(name(type)) + " takes " + count + ", got " + std::to_string(constant.size()));
     } else if (type == QUELL_TYPE_ID && !std::all_of(constant.begin(), constant.end(), is_id)) {
-      tell("a constant id is an integer from 0 to 4294967295");
+      tell("a constant of type id takes an integer from 0 to 4294967295");
     }
   }
 

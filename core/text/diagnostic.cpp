@@ -10,7 +10,8 @@ namespace quell {
 namespace {
 
 constexpr std::size_t kMostShown = 200;
-constexpr std::size_t kContextBytes = 60;  // of a long line, on either side of the place
+constexpr std::size_t kLongestLine = 160;  // bytes; of longer ones, what is near the place is shown
+constexpr std::size_t kContextBytes = 70;
 
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
@@ -39,12 +40,13 @@ std::string quote(const Position& where) {
   std::size_t column = 0;
   std::string_view line = line_at(where, column);
   std::string head, tail;
-  if (line.size() > column + kContextBytes) {
+  const bool is_long = line.size() > kLongestLine;
+  if (is_long && line.size() > column + kContextBytes) {
     std::size_t end = column + kContextBytes;
     while (end < line.size() && continues_character(line[end])) ++end;
     if (end < line.size()) line = line.substr(0, end), tail = "...";
   }
-  if (column > kContextBytes) {
+  if (is_long && column > kContextBytes) {
     std::size_t begin = column - kContextBytes;
     while (continues_character(line[begin])) --begin;
     if (begin > 0) line.remove_prefix(begin), column -= begin, head = "...";

@@ -1,6 +1,7 @@
 #include "quell/text/json.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -85,7 +86,9 @@ class Builder {
         if (text_[cursor_] == '\\') ++cursor_;
       ++cursor_;
     } else if (!std::strchr("{}[]", first)) {
-      while (cursor_ < text_.size() && !std::strchr(" \t\r\n,:{}[]", text_[cursor_])) ++cursor_;
+      while (cursor_ < text_.size() &&
+             (std::isalnum(static_cast<unsigned char>(text_[cursor_])) || std::strchr("+-._", text_[cursor_])))
+        ++cursor_;
     }
     return {source_, token_};
   }
@@ -114,9 +117,9 @@ class Builder {
         continue;
       }
       repeats[order[i]] = true;
-      errors_.error(object.members[order[i]].where, "the key '" + key(order[i]) +
-                                                        "' stands here for the second time; the first is in line " +
-                                                        std::to_string(object.members[order[first]].where.line()));
+      const int line = object.members[order[first]].where.line();
+      errors_.error(object.members[order[i]].where,
+                    "the key '" + key(order[i]) + "' is there already, in line " + std::to_string(line) + "; expected it once");
     }
     std::size_t index = 0;
     std::erase_if(object.members, [&](const JsonMember&) { return repeats[index++]; });
@@ -200,7 +203,7 @@ std::optional<Json> parse_json(const SourceTextPtr& text, Diagnostics& errors) {
 
 SourceTextPtr read_text(const std::filesystem::path& file, Fault fault, std::size_t max_bytes) {
   std::error_code error;
-  if (std::filesystem::is_directory(file, error)) throw Error(fault, file.string(), "this is a folder; expected a file");
+  if (std::filesystem::is_directory(file, error)) throw Error(fault, file.string(), "is a folder; expected a file");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw Error(fault, file.string(), std::string("cannot be opened: ") + std::strerror(errno));
   auto text = std::make_shared<SourceText>();

@@ -35,9 +35,10 @@ class Cleaner {
     for (at_ = 0; at_ < text_.size();)
       if (!step()) return std::nullopt;
     if (open_.empty()) return std::move(text_);
-    const char bracket = text_[open_.back()];
-    return fail(open_.back(), std::string("this '") + bracket + "' is never closed; expected '" + closing(bracket) +
-                                  "' before the end of the text");
+    const std::size_t unclosed = suspect_.value_or(open_.back().offset);
+    const std::string bracket(1, text_[unclosed]), expected(1, closing(text_[unclosed]));
+    const std::string hint = suspect_ ? ", as the indentation tells" : "";
+    return fail(unclosed, "this '" + bracket + "' is never closed" + hint + "; expected '" + expected + "'");
   }
 
  private:
@@ -48,8 +49,12 @@ class Cleaner {
     return std::nullopt;
   }
   void blank(std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (text_[i] != '\n' && text_[i] != '\r') text_[i] = ' ';
+    for (std::size_t i = begin; i < end; ++i) {
+      if (text_[i] == '\n')
+        line_begin_ = i + 1;
+      else if (text_[i] != '\r')
+        text_[i] = ' ';
+    }
   }
 
   bool check_encoding() {
@@ -67,6 +72,10 @@ class Cleaner {
     if (c == '/') return take_comment();
     if (c == '{' || c == '[') return open();
     if (c == '}' || c == ']') return close();
+    // The parser would take a zero for the end of the text.
+    if (static_cast<unsigned char>(c) < 0x20 && !is_space(c))
+      return fail(at_, "unexpected control character " + std::to_string(c)), false;
+    if (c == '\n') line_begin_ = at_ + 1;
     if (c == ',')
       comma_ = at_;
     else if (!is_space(c))
@@ -109,7 +118,7 @@ class Cleaner {
 
   bool open() {
     comma_.reset();
-    open_.push_back(at_++);
+    open_.push_back({at_++, indentation()});
     if (open_.size() <= kDeepestJson) return true;
     fail(at_ - 1, "brackets are nested more than " + std::to_string(kDeepestJson) + " deep");
     return false;
@@ -118,7 +127,7 @@ class Cleaner {
   bool close() {
     const std::string bracket = std::string("'") + text_[at_] + "'";
     if (open_.empty()) return fail(at_, "this " + bracket + " closes nothing; remove it"), false;
-    const Position opened{source_, open_.back()};
+    const Position opened{source_, open_.back().offset};
     const char expected = closing(text_[opened.offset]);
     if (text_[at_] != expected) {
       fail(at_, "this " + bracket + " does not match the '" + text_[opened.offset] + "' of line " +
@@ -129,10 +138,15 @@ class Cleaner {
     // A comma after nothing ("[,]") is no trailing comma.
     if (comma_ && follows_value(*comma_)) blank(*comma_, *comma_ + 1);
     comma_.reset();
+    const bool starts_line = line_begin_ + indentation() == at_;
+    if (!suspect_ && starts_line && indentation() != open_.back().indentation) suspect_ = opened.offset;
     open_.pop_back();
     ++at_;
     return true;
   }
+
+  // Of the line that is being read.
+  std::size_t indentation() const { return text_.find_first_not_of(" \t", line_begin_) - line_begin_; }
 
   bool follows_value(std::size_t comma) const {
     const std::size_t before = text_.find_last_not_of(" \t\r\n", comma - 1);
@@ -143,8 +157,13 @@ class Cleaner {
   Diagnostics& errors_;
   std::string text_;
   std::size_t at_ = 0;
-  std::vector<std::size_t> open_;     // offsets of the brackets around
-  std::optional<std::size_t> comma_;  // the last character that was neither space nor comment, when it was a comma
+  std::size_t line_begin_ = 0;
+  struct Bracket {
+    std::size_t offset, indentation;  // the latter of its line
+  };
+  std::vector<Bracket> open_;           // around what is being read
+  std::optional<std::size_t> suspect_;  // the first bracket that was closed by one of another indentation
+  std::optional<std::size_t> comma_;    // the last character that was neither space nor comment, when it was a comma
 };
 
 }  // namespace

@@ -19,8 +19,6 @@ std::string quote_token(std::string_view text) {
   while (end < text.size() && end < 30 && (is_word(text[end]) || (number && is_number_start(text[end])))) ++end;
   if (end == 0)  // a single character, which may take several bytes
     for (end = 1; end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80;) ++end;
-  const auto first = static_cast<unsigned char>(text[0]);
-  if (first < 0x20) return "control character " + std::to_string(first);
   return "'" + std::string(text.substr(0, end)) + "'";
 }
 
