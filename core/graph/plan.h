@@ -18,7 +18,7 @@ struct PlannedNode {
   int node = 0;                             ///< index into Graph::nodes
   std::vector<std::vector<Shape>> outputs;  ///< shape of each item of each output
   std::vector<int> radius;                  ///< for each input; QUELL_RADIUS_UNBOUNDED
-  std::vector<int> in_place_of;             ///< for each output: the input whose buffer it takes over; -1: a buffer of its own
+  std::vector<int> in_place_of;             ///< for each output: the input whose buffer it takes over (item by item); -1: its own
   std::size_t scratch_bytes = 0;
   std::size_t slot_scratch_bytes = 0;
   std::vector<Endpoint> last_uses;  ///< same-frame values that nobody needs after this node
@@ -54,7 +54,9 @@ struct Plan {
   std::vector<Endpoint> dumps;     ///< inner endpoints that are handed to the sink, too
   std::vector<PlannedHistory> histories;
   std::vector<PlannedLoop> loops;
-  std::size_t frame_bytes = 0;  ///< largest sum of buffers alive at a time in one frame, inputs included, history not
+  /// Largest sum of buffers alive at a time in one frame: inputs and scratch memory included; history, and the scratch memory of
+  /// single threads, not. All sums stop at SIZE_MAX.
+  std::size_t frame_bytes = 0;
   std::size_t history_bytes = 0;
   std::size_t unshared_bytes = 0;  ///< what a frame would need if no buffer were reused
 
@@ -66,8 +68,10 @@ struct Plan {
 
 using InputShapes = std::map<std::string, std::optional<Shape>, std::less<>>;
 
-/// Plans a graph for the inputs that a source has. Throws Error(usage) when a required input is absent, sizes do not agree, or
-/// a pass refuses its inputs; every mistake at once, at the place of the node in the file.
+/// Plans a graph for the inputs that a source has; `dumps` are names for Graph::find. What lacks an absent input is left out
+/// where its consumers can do without. Throws Error(usage) when a required input is absent, an output or dump cannot be computed,
+/// sizes do not agree, or a pass refuses its inputs, and Error(plugin) when a pass's answer cannot be; every mistake at once, at
+/// its place in the file.
 Plan make_plan(std::shared_ptr<const Graph> graph, const InputShapes& inputs, const std::vector<std::string>& dumps = {});
 
 /// The plan for people: nodes in order, what each reads and writes, memory, loops.

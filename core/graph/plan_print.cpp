@@ -19,6 +19,13 @@ std::string number(double value) {
   return text.str();
 }
 
+// Numbers of a column end below each other.
+std::string right_aligned(std::size_t bytes) {
+  constexpr std::size_t kWidth = 9;
+  const std::string text = format_bytes(bytes);
+  return text.size() < kWidth ? std::string(kWidth - text.size(), ' ') + text : text;
+}
+
 class Printer {
  public:
   explicit Printer(const Plan& plan) : plan_(plan), graph_(*plan.graph), presence_(graph_, plan.inputs) {}
@@ -160,7 +167,7 @@ class Printer {
       std::string span = history.frames > 0 ? format_count(history.frames, "frame") + " back" : "";
       if (history.frames_ahead > 0) span += (span.empty() ? "" : ", ") + format_count(history.frames_ahead, "frame") + " ahead";
       const std::size_t kept = bytes_of(history);
-      table.add_row({graph_.describe(history.from), span, kept > 0 ? format_bytes(kept) : ""});
+      table.add_row({graph_.describe(history.from), span, kept > 0 ? right_aligned(kept) : ""});
     }
     return table.render();
   }
@@ -171,20 +178,25 @@ class Printer {
       std::string nodes;
       for (const int node : loop.nodes) nodes += (nodes.empty() ? "" : ", ") + node_of(node).name;
       const std::string delay = format_count(loop.delay, "frame");
-      text += wrap(nodes + ": " + delay + " around, so that at most " + delay + " may be in it at a time", 2);
+      text += wrap(nodes + ": " + delay + " around, so that at most " + delay + " can be inside at a time", 2);
     }
     return text;
   }
 
   std::string memory() const {
+    const std::vector<std::size_t> alive = count_alive_bytes(plan_);
+    std::string most = format_bytes(plan_.unshared_bytes) + " if no buffer were used twice";
+    if (const auto largest = std::max_element(alive.begin(), alive.end()); largest != alive.end()) {
+      const PlannedNode& planned = plan_.nodes[static_cast<std::size_t>(largest - alive.begin())];
+      most = "while '" + node_of(planned.node).name + "' runs; " + most;
+    }
     Table table(2);
-    table.add_row({"one frame", format_bytes(plan_.frame_bytes),
-                   "(" + format_bytes(plan_.unshared_bytes) + " if no buffer were used twice)"});
-    table.add_row({"history", format_bytes(plan_.history_bytes)});
+    table.add_row({"one frame", right_aligned(plan_.frame_bytes), most});
+    table.add_row({"history", right_aligned(plan_.history_bytes)});
     return table.render();
   }
 
-  static std::string bytes(const Shape& shape) { return bytes_of(shape) > 0 ? format_bytes(bytes_of(shape)) : ""; }
+  static std::string bytes(const Shape& shape) { return bytes_of(shape) > 0 ? right_aligned(bytes_of(shape)) : ""; }
   const Node& node_of(int node) const { return graph_.nodes[static_cast<std::size_t>(node)]; }
 
   const Plan& plan_;

@@ -209,5 +209,24 @@ TEST(PlanErrors, TellEveryDumpThatCannotBe) {
   EXPECT_THAT(error, HasSubstr("'b.color' cannot be dumped: 'b' needs 'depth' as 'color', and the source does not have 'depth'"));
 }
 
+TEST(PlanErrors, StandWhereTheyAreInAGraphFile) {
+  Registry registry;
+  const quell_pass_desc* const passes[] = {mix(), resize()};
+  registry.add(passes, 2);
+  const auto text = std::make_shared<const SourceText>(SourceText{"half.json", R"({
+  "quell": 1,
+  "inputs": { "color": "color", "depth": "depth" },
+  "nodes": {
+    "half": { "pass": "resize", "in": { "color": "color" } },
+    "join": { "pass": "mix", "in": { "color": "color", "more": ["depth", "half.color"] } }
+  },
+  "outputs": { "color": "join.color" }
+})"});
+  const auto graph = parse_graph(text, registry);
+  EXPECT_THAT(error_of(graph, kColor64), HasSubstr("half.json:3:33: error: the graph needs the input 'depth'"));
+  EXPECT_THAT(error_of(graph, {{"color", image(64, 32)}, {"depth", image(64, 32, QUELL_TYPE_DEPTH)}}),
+              HasSubstr("half.json:6:74: error: 'more[1]' of 'join' is 32 x 16 (from 'half.color')"));
+}
+
 }  // namespace
 }  // namespace quell::test
