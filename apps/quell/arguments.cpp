@@ -15,8 +15,11 @@ CLI::Option* add_text(CLI::App& app, const char* name, std::string& value, const
 }
 
 void add_options(CLI::App& app, VerbosityArguments& arguments) {
-  app.add_flag("-q,--quiet", arguments.quiet, "Say nothing but warnings and errors.")->group(kOtherGroup);
+  app.add_flag("-q,--quiet", arguments.quiet, "Say nothing but warnings and errors.")
+      ->disable_flag_override()
+      ->group(kOtherGroup);
   app.add_flag("-v,--verbose", arguments.verbose, "Say more: what passes tell for debugging, and where the time goes.")
+      ->disable_flag_override()
       ->group(kOtherGroup);
 }
 

@@ -39,10 +39,10 @@ struct SequenceArguments {
   bool given() const { return !sequence.empty() || !in.empty(); }
 };
 
-/// The help's headings, in this order.
+/// The headings of help texts, in this order.
 inline constexpr const char* kInputGroup = "What to read";
-inline constexpr const char* kGraphGroup = "The graph";
 inline constexpr const char* kOutputGroup = "What to write";
+inline constexpr const char* kGraphGroup = "The graph";
 inline constexpr const char* kOtherGroup = "Other options";
 
 void add_options(CLI::App& app, VerbosityArguments& arguments);

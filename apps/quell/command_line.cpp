@@ -11,20 +11,21 @@ namespace {
 /// "--out" of "--out=folder".
 std::string option_name(const std::string& argument) { return argument.substr(0, argument.find('=')); }
 
-std::vector<std::string> option_names(const CLI::App& app) {
+/// The dashes are left out of the comparison: they are always alike.
+std::string suggest_option(const CLI::App& app, const std::string& argument) {
   std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
-  }
-  return names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back(name);
+  std::vector<std::string> close = nearest(argument.substr(std::min(argument.find_first_not_of('-'), argument.size())), names);
+  for (std::string& name : close) name = "--" + name;
+  return close.empty() ? "" : "; did you mean " + list_names(close) + "?";
 }
 
 std::string explain_extra(const CLI::App& app, const std::string& argument) {
   const bool is_program = app.get_parent() == nullptr;
   if (argument.starts_with('-')) {
     const std::string name = option_name(argument);
-    return "there is no option '" + name + "'" + did_you_mean(name, option_names(app));
+    return "there is no option '" + name + "'" + suggest_option(app, name);
   }
   if (!is_program) return "'" + argument + "' is one argument too many";
   std::vector<std::string> commands;
@@ -33,13 +34,14 @@ std::string explain_extra(const CLI::App& app, const std::string& argument) {
          list_names(commands, "and");
 }
 
-/// The option that an error is about, by the name with which CLI11 starts its message.
+/// What is wrong with an option's value. CLI11's message names the option, at its start without dashes.
 std::string explain_mismatch(const CLI::App& app, const std::string& message) {
   for (const CLI::Option* option : app.get_options()) {
     const std::string name = option->get_name(false, false);
-    if (name.empty() || message.find(name) == std::string::npos) continue;
+    const std::string bare = name.substr(std::min(name.find_first_not_of('-'), name.size()));
+    if (bare.empty() || (message.find(name) == std::string::npos && !message.starts_with(bare + " "))) continue;
     if (option->count() > 1) return name + " may be given only once";
-    if (option->get_type_size() == 0) return name + " takes no value";
+    if (option->get_expected_max() == 0 || option->get_type_size() == 0) return name + " takes no value";
     return name + " needs a value: " + name + " " + option->get_type_name();
   }
   return message;

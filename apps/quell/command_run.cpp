@@ -66,7 +66,6 @@ ExitCode tell_interrupted(const Job& job, const std::vector<FrameReport>& report
 
 ExitCode compute(const Job& job, const Arguments& arguments, int threads, FileSink& sink, const std::vector<ResultFiles>& results,
                  Console& console) {
-  const Interrupt interrupt;
   SessionOptions options;
   options.threads = threads;
   options.dumps = arguments.dumps;
@@ -91,6 +90,7 @@ ExitCode compute(const Job& job, const Arguments& arguments, int threads, FileSi
 }
 
 ExitCode run(const Arguments& arguments, Console& console) {
+  const Interrupt interrupt;
   set_verbosity(arguments.verbosity.verbosity());
   const int threads = parse_count(arguments.threads, "--threads", 0, kMostThreads);
   FileSinkOptions output = parse_output(arguments);
@@ -137,6 +137,7 @@ Command add_run(CLI::App& program) {
       "Example:\n"
       "  quell run games202 shot/ -o denoised --frames 1-100 --set filter.radius=8\n"
       "reads shot/color.0001.exr and its like, and writes denoised/color.0001.exr to denoised/color.0100.exr.\n"
+      "\n"
       "Exit status: 0 all is well, 1 some frames failed, 2 usage or graph, 3 input, 4 plugin, 70 internal error, 75 "
       "interrupted.");
   auto arguments = std::make_shared<Arguments>();
@@ -147,6 +148,7 @@ Command add_run(CLI::App& program) {
            "Threads to compute with; 0, the default, for as many as there are processors.")
       ->group(kOtherGroup);
   app.add_flag("-n,--dry-run", arguments->dry_run, "Say what would be read, run and written, and stop there.")
+      ->disable_flag_override()
       ->group(kOtherGroup);
   add_options(app, arguments->verbosity);
   return {&app, [arguments](Console& console) { return run(*arguments, console); }};

@@ -103,6 +103,7 @@ std::string describe_default(const quell_pass_desc& pass, const quell_change& ch
   const quell_param_desc* param = find_param(pass, text(change.renamed_to ? change.renamed_to : change.param));
   if (!change.former_default || !param) return "its default changed";
   quell_param_desc former = *param;
+  former.type = change.former_default->type;  // an enum's may be told by name, as text
   former.default_value = change.former_default;
   return "its default was " + to_json(former, default_value(former));
 }

@@ -32,7 +32,7 @@ fs::path find_graph(const std::string& name) {
   if (is_bare && std::find(names.begin(), names.end(), name) != names.end()) return shipped_graphs_folder() / (name + ".json");
   std::string what = fs::is_directory(name, error) ? "this is a folder, not a graph file" : "there is no such graph file";
   what += is_bare ? did_you_mean(name, names) : "";
-  what += names.empty() ? "" : "; the graphs that ship with quell are " + list_names(names, "and");
+  what += names.empty() ? "" : "; quell ships with " + list_names(names, "and");
   throw Error(Fault::usage, name, what);
 }
 

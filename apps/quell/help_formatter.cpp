@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 
+#include "arguments.h"
 #include "command_line.h"
 #include "text_layout.h"
 
@@ -14,7 +15,7 @@ class HelpFormatter final : public CLI::FormatterBase {
     std::string text = wrap(app->get_description());
     text += "\nUsage: " + usage(*app, name) + "\n";
     text += positionals(*app) + commands(*app);
-    for (const std::string& group : app->get_groups()) text += options(*app, group);
+    for (const char* group : {kInputGroup, kOutputGroup, kGraphGroup, kOtherGroup}) text += options(*app, group);
     if (!app->get_footer().empty()) text += "\n" + wrap_footer(app->get_footer());
     return text;
   }
@@ -31,9 +32,15 @@ class HelpFormatter final : public CLI::FormatterBase {
     for (const CLI::Option* option : positional_options(app))
       text += option->get_required() ? " " + option->get_name(true) : " [" + option->get_name(true) + "]";
     for (const CLI::Option* option : app.get_options())
-      if (option->nonpositional() && option->get_required()) text += " " + label(*option);
+      if (option->nonpositional() && option->get_required()) text += " " + short_label(*option);
     if (!app.get_subcommands({}).empty()) return text + " COMMAND ...";
     return text + " [OPTIONS]";
+  }
+
+  /// "-o FOLDER"
+  static std::string short_label(const CLI::Option& option) {
+    const auto& names = option.get_snames();
+    return (names.empty() ? option.get_name() : "-" + names.front()) + " " + option.get_type_name();
   }
 
   /// "-o,--out FOLDER"

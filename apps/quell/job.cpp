@@ -102,7 +102,10 @@ std::vector<std::int64_t> choose_frames(const Sequence& sequence, const std::vec
   if (!missing.empty()) {
     std::vector<std::int64_t> dropped;
     for (const MissingFile& file : missing) dropped.push_back(file.frame);
-    spdlog::warn("frames {} are left out, because files are missing:{}", FrameRange(dropped).text(), list_missing(missing));
+    const FrameRange range(std::move(dropped));
+    const bool one = range.frames().size() == 1;
+    spdlog::warn("{} {} left out, because files are missing:{}", one ? "frame" : "frames", range.text() + (one ? " is" : " are"),
+                 list_missing(missing));
   }
   return frames;
 }
@@ -112,7 +115,8 @@ void tell_choice(const Job& job) {
   for (const InputFiles& files : job.inputs) names.push_back("'" + files.input + "'");
   std::string list;
   for (std::size_t i = 0; i < names.size(); ++i) list += (i == 0 ? "" : i + 1 < names.size() ? ", " : " and ") + names[i];
-  spdlog::info("'{}' reads {} in {} frames: {}", job.graph->name, list, job.frames.size(), FrameRange(job.frames).text());
+  spdlog::info("'{}' reads {} in {} frame{}: {}", job.graph->name, list, job.frames.size(), job.frames.size() == 1 ? "" : "s",
+               FrameRange(job.frames).text());
 }
 
 }  // namespace

@@ -1,9 +1,12 @@
 // quell, the runner: reads the command line, runs one subcommand, and turns whatever goes wrong into a message and an exit code.
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstring>
 #include <iostream>
 #include <new>
 #include <vector>
 
+#include "arguments.h"
 #include "command_line.h"
 #include "commands.h"
 #include "quell/sdk/abi.h"
@@ -27,14 +30,14 @@ void describe_program(CLI::App& program) {
   program.require_subcommand(0, 1);
   program.set_version_flag("--version", version_text(), "Print the version.");
   program.set_help_flag("-h,--help", "Print this help.");
-  for (const char* flag : {"--version", "--help"}) program.get_option(flag)->group("Options");
+  for (const char* flag : {"--version", "--help"}) program.get_option(flag)->group(kOtherGroup);
 }
 
 ExitCode run_program(int argc, char** argv, Console& console) {
   CLI::App program("", "quell");
   describe_program(program);
   const std::vector<Command> commands = {add_run(program), add_check(program), add_graph(program), add_passes(program)};
-  for (const Command& command : commands) command.options->get_option("--help")->group("Other options");
+  for (const Command& command : commands) command.options->get_option("--help")->group(kOtherGroup);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -50,10 +53,18 @@ ExitCode run_program(int argc, char** argv, Console& console) {
   return kOk;
 }
 
+/// A full disk must not look like success.
+ExitCode finish_output(ExitCode code) {
+  std::cout.flush();
+  if (std::cout) return code;
+  spdlog::error("the output cannot be written: {}", std::strerror(errno));
+  return code == kOk ? kInternal : code;
+}
+
 ExitCode guarded_main(int argc, char** argv) {
   const std::shared_ptr<Console> console = open_console();
   try {
-    return run_program(argc, argv, *console);
+    return finish_output(run_program(argc, argv, *console));
   } catch (const Error& error) {
     spdlog::error(error.what());
     return exit_code(error.fault());

@@ -34,11 +34,11 @@ std::string format_duration(double seconds) {
 }
 
 std::string format_bytes(std::size_t bytes) {
-  if (bytes < 1000) return std::to_string(bytes) + " bytes";
-  constexpr std::array units{"kB", "MB", "GB", "TB"};
-  double value = static_cast<double>(bytes) / 1000;
+  if (bytes < 1024) return std::to_string(bytes) + " bytes";
+  constexpr std::array units{"KiB", "MiB", "GiB", "TiB"};
+  double value = static_cast<double>(bytes) / 1024;
   std::size_t unit = 0;
-  for (; value >= 999.5 && unit + 1 < units.size(); ++unit) value /= 1000;
+  for (; value >= 999.5 && unit + 1 < units.size(); ++unit) value /= 1024;
   return fixed(value, value < 9.95 ? 1 : 0) + " " + units[unit];
 }
 
@@ -50,19 +50,20 @@ std::string plain_line(std::int64_t frame, std::size_t done, std::size_t total, 
 }
 
 std::string progress_line(const ProgressState& state, int columns) {
-  constexpr std::size_t kBar = 30;
-  std::string line = bar(state.done, state.total, kBar) + "  " + std::to_string(state.done) + "/" + std::to_string(state.total);
+  std::string text = std::to_string(state.done) + "/" + std::to_string(state.total);
   if (state.done > 0) {
-    line += "  frame " + std::to_string(state.frame);
+    text += "  frame " + std::to_string(state.frame);
     const double rate = state.seconds > 0 ? static_cast<double>(state.done) / state.seconds : 0;
-    if (rate > 0) {
-      line += "  " + format_rate(rate) + " frames/s";
-      line += "  " + format_duration(static_cast<double>(state.total - state.done) / rate) + " left";
-    }
-    line += "  " + format_bytes(state.bytes);
+    if (rate > 0) text += "  " + format_rate(rate) + " frames/s";
+    if (rate > 0 && state.done < state.total)
+      text += "  " + format_duration(static_cast<double>(state.total - state.done) / rate) + " left";
+    text += "  " + format_bytes(state.bytes);
   }
   // A full last column would make some terminals begin a new line.
-  return line.substr(0, static_cast<std::size_t>(std::max(columns - 1, 1)));
+  const int room = std::max(columns - 1, 1);
+  const int bar_width = std::min(room - static_cast<int>(text.size()) - 4, 30);  // 4 for brackets and spaces
+  if (bar_width < 5) return text.substr(0, static_cast<std::size_t>(room));
+  return bar(state.done, state.total, static_cast<std::size_t>(bar_width)) + "  " + text;
 }
 
 Progress::Progress(Console& console, std::size_t total) : console_(console), start_(std::chrono::steady_clock::now()) {

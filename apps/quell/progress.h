@@ -20,14 +20,14 @@ struct ProgressState {
   std::size_t bytes = 0;   ///< held by images
 };
 
-/// "[######      ]  4/12  frame 3  1.2 frames/s  7 s left  250 MB", cut to `columns`.
+/// "[######      ]  4/12  frame 3  1.2 frames/s  7 s left  250 MiB", shorter than `columns`: the bar gives way first.
 std::string progress_line(const ProgressState& state, int columns);
 /// "frame 3 (4 of 12): 0.81 s"
 std::string plain_line(std::int64_t frame, std::size_t done, std::size_t total, double seconds);
 
 /// "0.81 s", "9.3 s", "42 s", "3 min 20 s", "2 h 05 min".
 std::string format_duration(double seconds);
-/// "640 bytes", "12 kB", "3.4 MB", "120 MB", "1.5 GB"; powers of 1000.
+/// "640 bytes", "12 KiB", "3.4 MiB", "120 MiB", "1.5 GiB".
 std::string format_bytes(std::size_t bytes);
 /// "0.25", "1.2", "37": two digits that matter.
 std::string format_rate(double rate);
