@@ -21,7 +21,7 @@ class RawPort {
   void set_output(const std::vector<Item>& items, const std::vector<Shape>& shapes) {
     set(items);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      if (shapes[i].type != QUELL_TYPE_VALUE) continue;
+      if (!shapes[i].present || shapes[i].type != QUELL_TYPE_VALUE) continue;
       numbers_[i].assign(shapes[i].value_count, 0.0);
       values_[i] = {sizeof(quell_values), shapes[i].value_count, numbers_[i].data()};
       items_[i].values = &values_[i];
@@ -89,11 +89,13 @@ struct NodeRunner::Tables {
         inputs(raw_inputs.size()),
         outputs(raw_outputs.size()) {}
 
+  static bool needs_buffer(const Shape& shape) { return shape.present && is_image(shape.type); }
+
   Image place(std::size_t output, std::size_t item, PortItems& in) {
     const Shape& shape = layout.outputs[output][item];
-    const int source = layout.in_place_of[output];
-    if (source >= 0 && item == 0 && !in[static_cast<std::size_t>(source)].empty()) {
-      const Image* image = in[static_cast<std::size_t>(source)][0].image();
+    if (const int source = layout.in_place_of[output]; source >= 0) {
+      const std::vector<Item>& items = in[static_cast<std::size_t>(source)];
+      const Image* image = item < items.size() ? items[item].image() : nullptr;
       if (image && image->buffer().unique() && image->size() == shape.size &&
           info(image->type()).channels == info(shape.type).channels)
         return image->as(shape.type);
@@ -105,7 +107,7 @@ struct NodeRunner::Tables {
     out.assign(layout.outputs.size(), {});
     for (std::size_t o = 0; o < layout.outputs.size(); ++o)
       for (std::size_t i = 0; i < layout.outputs[o].size(); ++i)
-        out[o].push_back(is_image(layout.outputs[o][i].type) ? Item(place(o, i, in)) : Item());
+        out[o].push_back(needs_buffer(layout.outputs[o][i]) ? Item(place(o, i, in)) : Item());
   }
 
   void place_scratch() {
@@ -169,7 +171,8 @@ void NodeRunner::run(std::int64_t frame, PortItems& inputs, PortItems& outputs) 
   if (status != QUELL_OK) throw Error(Fault::frame, t.name, reason.empty() ? "the pass failed without giving a reason" : reason);
   for (std::size_t o = 0; o < outputs.size(); ++o)
     for (std::size_t i = 0; i < outputs[o].size(); ++i)
-      if (t.layout.outputs[o][i].type == QUELL_TYPE_VALUE) outputs[o][i] = t.raw_outputs[o].written_values(i);
+      if (t.layout.outputs[o][i].present && t.layout.outputs[o][i].type == QUELL_TYPE_VALUE)
+        outputs[o][i] = t.raw_outputs[o].written_values(i);
 }
 
 }  // namespace quell

@@ -14,7 +14,7 @@ namespace quell {
 /// What a node needs besides its inputs; the plan computes it with the pass's infer.
 struct NodeLayout {
   std::vector<std::vector<Shape>> outputs;  ///< of each item of each output
-  std::vector<int> in_place_of;             ///< for each output: an input, or -1
+  std::vector<int> in_place_of;             ///< for each output: an input, item by item, or -1
   std::size_t scratch_bytes = 0;
   std::size_t slot_scratch_bytes = 0;
 };
