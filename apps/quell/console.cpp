@@ -71,6 +71,7 @@ void Console::sink_it_(const spdlog::details::log_msg& message) {
   const Style style = style_of(message.level);
   if (!style.label.empty() && !names_its_place(text)) {
     const std::string label(style.label);
+    if (text.starts_with(label)) text.erase(0, label.size());  // a graph's error without a place has its own
     text.insert(0, has_colors_ ? std::string(style.color) + label + "\x1b[0m" : label);
   }
   text += '\n';

@@ -31,7 +31,10 @@ fs::path find_graph(const std::string& name) {
   const bool is_bare = name.find('/') == std::string::npos;
   if (is_bare && std::find(names.begin(), names.end(), name) != names.end()) return shipped_graphs_folder() / (name + ".json");
   std::string what = fs::is_directory(name, error) ? "this is a folder, not a graph file" : "there is no such graph file";
-  what += is_bare ? did_you_mean(name, names) : "";
+  if (fs::exists(name + ".json", error))
+    what += "; did you mean '" + name + ".json'?";
+  else if (is_bare)
+    what += did_you_mean(name, names);
   what += names.empty() ? "" : "; quell ships with " + list_names(names, "and");
   throw Error(Fault::usage, name, what);
 }

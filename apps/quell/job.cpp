@@ -33,10 +33,19 @@ std::unique_ptr<Sequence> open_sequence(const Graph& graph, const SequenceArgume
                     ") with --in INPUT=PATTERN");
   SequenceOptions options;
   options.in = arguments.in;
+  options.wanted = names_of_inputs(graph);
   if (!arguments.frames.empty()) options.frames = FrameRange::parse(arguments.frames);
   std::unique_ptr<Sequence> sequence = Sequence::open(arguments.sequence, options);
   for (const GraphInput& input : graph.inputs) sequence->expect(input.name, input.type);
   return sequence;
+}
+
+void require_known_dumps(const Graph& graph, const std::vector<std::string>& dumps) {
+  for (const std::string& dump : dumps) {
+    try {
+      graph.find(dump);
+    } catch (const Error& error) { throw Error(error.fault(), "--dump", error.what()); }
+  }
 }
 
 /// A misspelt --in would otherwise be an input that nobody asks for.
@@ -51,19 +60,19 @@ void require_known_names(const Graph& graph, const SequenceArguments& arguments)
 }
 
 void require_inputs(const Graph& graph, const std::vector<InputFiles>& found, const std::string& place) {
-  std::string missing;
+  std::string missing, example;
   for (const GraphInput& input : graph.inputs) {
     const auto is_it = [&](const InputFiles& files) { return files.input == input.name; };
-    if (!input.optional && std::none_of(found.begin(), found.end(), is_it))
-      missing += "\n  " + input.name + " (" + std::string(name(input.type)) + ")" + (input.doc.empty() ? "" : ": " + input.doc);
+    if (input.optional || std::any_of(found.begin(), found.end(), is_it)) continue;
+    missing += "\n  " + input.name + " (" + std::string(name(input.type)) + ")" + (input.doc.empty() ? "" : ": " + input.doc);
+    if (example.empty()) example = input.name + "=FOLDER/NAME.####" + (input.type == QUELL_TYPE_CAMERA ? ".json" : ".exr");
   }
   if (missing.empty()) return;
   std::string have;
   for (const InputFiles& files : found) have += (have.empty() ? "" : ", ") + files.input;
   throw Error(Fault::input, place,
-              "inputs of the graph '" + graph.name + "' are missing:" + missing +
-                  "\nthe sequence has: " + (have.empty() ? "nothing" : have) + "\nname their files, for example: --in " +
-                  missing.substr(3, missing.find(' ', 3) - 3) + "=FOLDER/NAME.####.exr");
+              "inputs of the graph '" + graph.name + "' are missing:" + missing + "\nthe sequence has: " +
+                  (have.empty() ? "nothing" : have) + "\nname their files, for example: --in " + example);
 }
 
 /// The files of the inputs that the plan reads, in the graph's order.
@@ -134,6 +143,7 @@ InputShapes shapes_of(const Graph& graph, FrameSource& source) {
 
 Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arguments, const std::vector<std::string>& dumps) {
   require_known_names(*graph, arguments);
+  require_known_dumps(*graph, dumps);
   Job job;
   job.graph = graph;
   job.sequence = open_sequence(*graph, arguments);

@@ -101,7 +101,8 @@ std::string describe_layout(const Candidates& candidates) {
 
 }  // namespace
 
-FolderLayout recognise_folder(const std::filesystem::path& folder, const InputSpecs& elsewhere) {
+FolderLayout recognise_folder(const std::filesystem::path& folder, const InputSpecs& elsewhere,
+                              const std::optional<std::vector<std::string>>& wanted) {
   const Candidates candidates = find_candidates(folder, list_files(folder));
   if (candidates.empty())
     throw Error(
@@ -113,6 +114,8 @@ FolderLayout recognise_folder(const std::filesystem::path& folder, const InputSp
   std::string ambiguities;
   for (const auto& [input, choices] : candidates) {
     if (elsewhere.contains(input)) continue;
+    const bool is_wanted = !wanted || std::find(wanted->begin(), wanted->end(), input) != wanted->end();
+    if (choices.size() > 1 && !is_wanted) continue;
     if (choices.size() > 1) ambiguities += (ambiguities.empty() ? "" : "\n") + describe_choices(input, choices);
     InputSpec spec;
     spec.name = input;

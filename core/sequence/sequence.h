@@ -17,6 +17,8 @@ namespace quell {
 struct SequenceOptions {
   std::vector<std::string> in;       ///< from --in: "color=beauty_%d.exr", "id=ID_%d.exr:background=-1"; later ones win
   std::optional<FrameRange> frames;  ///< from --frames
+  /// What will be read, when that is known: other inputs of a folder that are ambiguous are left out instead of being an error.
+  std::optional<std::vector<std::string>> wanted = std::nullopt;
 };
 
 /// One input as it was found.

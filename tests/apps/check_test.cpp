@@ -52,6 +52,8 @@ TEST_F(Check, RefusesAGraphThatDoesNotExist) {
   const Outcome name = run({"check", "game202"});
   EXPECT_EQ(name.code, 2);
   EXPECT_THAT(name.err, HasSubstr("error: game202: there is no such graph file; did you mean 'games202'?"));
+  make_graph();
+  EXPECT_THAT(run({"check", text("graph")}).err, HasSubstr("; did you mean '" + text("graph.json") + "'?"));
   const Outcome folder = run({"check", text("")});
   EXPECT_EQ(folder.code, 2);
   EXPECT_THAT(folder.err, HasSubstr(": this is a folder, not a graph file"));

@@ -45,7 +45,8 @@ TEST_F(ConsoleTest, DoesNotLabelWhatNamesItsOwnPlace) {
   Console console(stream_, false, false);
   log(console, spdlog::level::err, "g.json:1:2: error: wrong");
   log(console, spdlog::level::err, "wrong");
-  EXPECT_EQ(written(), "g.json:1:2: error: wrong\nerror: wrong\n");
+  log(console, spdlog::level::err, "error: wrong without a place");
+  EXPECT_EQ(written(), "g.json:1:2: error: wrong\nerror: wrong\nerror: wrong without a place\n");
 }
 
 }  // namespace

@@ -100,6 +100,19 @@ TEST_F(Input, ThatTheGraphDoesNotReadIsNotLookedFor) {
   EXPECT_EQ(run({"run", make_graph(), text("shot"), "-o", text("out"), "-q"}).err, "");
 }
 
+TEST_F(Input, IsAmbiguousOnlyWhenTheGraphReadsIt) {
+  make_shot(2);
+  const std::string graph = make_graph();
+  for (const char* name : {"shot/albedo.0001.exr", "shot/albedo_1.exr"}) write_file(name, "");
+  EXPECT_EQ(run({"run", graph, text("shot"), "-o", text("out"), "-q"}).err, "");
+  std::filesystem::copy(path("shot/color.0001.exr"), path("shot/beauty_1.exr"));
+  const Outcome outcome = run({"run", graph, text("shot"), "-o", text("out"), "-q"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("several files could be the input 'color':\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("say which, for example: --in color=" + text("shot/")));
+  EXPECT_EQ(run({"run", graph, text("shot"), "--in", "color=" + text("shot/color.####.exr"), "-o", text("out")}).code, 0);
+}
+
 TEST_F(Input, ThatTheGraphDoesNotHaveIsNotSilentlyIgnored) {
   make_shot(1);
   const Outcome outcome =

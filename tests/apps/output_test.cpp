@@ -37,7 +37,8 @@ TEST_F(Output, OfAnInnerImageThatDoesNotExistIsRefused) {
   make_shot(1);
   const Outcome outcome = run({"run", make_graph(), text("shot"), "-o", text("out"), "--dump", "scale.colour"});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("did you mean"));
+  EXPECT_THAT(outcome.err, ::testing::StartsWith("error: --dump: "));
+  EXPECT_THAT(outcome.err, HasSubstr("did you mean 'scale.color'?"));
   EXPECT_FALSE(std::filesystem::exists(path("out")));
 }
 
