@@ -101,13 +101,13 @@ std::string describe_layout(const Candidates& candidates) {
 
 }  // namespace
 
-FolderLayout recognise_folder(const std::filesystem::path& folder, const InputSpecs& elsewhere,
+FolderLayout recognize_folder(const std::filesystem::path& folder, const InputSpecs& elsewhere,
                               const std::optional<std::vector<std::string>>& wanted) {
   const Candidates candidates = find_candidates(folder, list_files(folder));
   if (candidates.empty())
     throw Error(
         Fault::input, folder.string(),
-        "no sequence is recognised here; expected files such as color.0001.exr, color_1spp.0001.exr or beauty_0.exr, or a "
+        "no sequence is recognized here; expected files such as color.0001.exr, color_1spp.0001.exr or beauty_0.exr, or a "
         "sequence.json");
   FolderLayout layout{describe_layout(candidates), {}};
   const bool course = layout.description.starts_with("GAMES202");

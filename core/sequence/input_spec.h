@@ -51,11 +51,11 @@ struct FolderLayout {
   InputSpecs inputs;
 };
 
-/// Recognises a folder by its file names: NAME.####.exr and NAME_#.exr are input NAME (`beauty` and `color_<n>spp` are color,
+/// Recognizes a folder by its file names: NAME.####.exr and NAME_#.exr are input NAME (`beauty` and `color_<n>spp` are color,
 /// `ID` is id), matrix_#.mat and frame.####.json are the camera. Inputs named in `elsewhere` are left out. Throws Error(input)
-/// when nothing is recognised, or when two patterns could be the same input, with the choices; such an input is left out when it
+/// when nothing is recognized, or when two patterns could be the same input, with the choices; such an input is left out when it
 /// is not among those `wanted`.
-FolderLayout recognise_folder(const std::filesystem::path& folder, const InputSpecs& elsewhere,
+FolderLayout recognize_folder(const std::filesystem::path& folder, const InputSpecs& elsewhere,
                               const std::optional<std::vector<std::string>>& wanted = std::nullopt);
 
 }  // namespace quell

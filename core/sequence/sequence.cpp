@@ -31,7 +31,7 @@ std::unique_ptr<Sequence> Sequence::open(const fs::path& path, const SequenceOpt
                   "no sequence: name a folder or a sequence.json, or give inputs such as --in color=beauty_%d.exr");
     state->title = "inputs given with --in";
   } else if (const fs::path file = folder ? path / "sequence.json" : path; folder && !fs::exists(file, error)) {
-    FolderLayout layout = recognise_folder(path, stated, options.wanted);
+    FolderLayout layout = recognize_folder(path, stated, options.wanted);
     state->title = path.string() + ": " + layout.description;
     specs = std::move(layout.inputs);
   } else {

@@ -41,7 +41,7 @@ struct MissingFile {
 /// How files are named and converted is written in core/sequence/README.md.
 class Sequence final : public FrameSource {
  public:
-  /// `path` is a folder whose file names are recognised (or that holds a sequence.json), a sequence.json, or empty when
+  /// `path` is a folder whose file names are recognized (or that holds a sequence.json), a sequence.json, or empty when
   /// options.in names everything. Throws Error(input) for what is missing, unreadable, ambiguous or wrong in a sequence.json
   /// (all mistakes at once), Error(usage) for a malformed option.
   static std::unique_ptr<Sequence> open(const std::filesystem::path& path, const SequenceOptions& options = {});
@@ -62,7 +62,7 @@ class Sequence final : public FrameSource {
   /// Digits of the frame numbers in file names (of `color` when there is one), for files to be written; 4 when they are not
   /// padded.
   int padding() const;
-  /// What was recognised, a line each, for printing.
+  /// What was recognized, a line each, for printing.
   std::string describe() const;
   /// What a person should know: padding that differs from the disk's, images that cover only part of their frame. Grows while
   /// reading.

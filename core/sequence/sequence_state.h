@@ -28,7 +28,7 @@ class Listings {
 };
 
 struct Sequence::State {
-  std::string title;  ///< what was recognised
+  std::string title;  ///< what was recognized
   std::map<std::string, SequenceInput, std::less<>> inputs;
   std::optional<FrameRange> asked;
   std::map<std::string, PortType, std::less<>> expected;

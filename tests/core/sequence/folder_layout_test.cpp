@@ -13,24 +13,24 @@ class FolderLayoutOf : public testing::Test {
   void make(const std::vector<std::string>& names) {
     for (const std::string& name : names) test::make_text(folder_ / name, "");
   }
-  FolderLayout recognise(const InputSpecs& elsewhere = {}) { return recognise_folder(folder_.path(), elsewhere); }
+  FolderLayout recognize(const InputSpecs& elsewhere = {}) { return recognize_folder(folder_.path(), elsewhere); }
   std::string error() {
-    return message_of(Fault::input, [&] { recognise(); });
+    return message_of(Fault::input, [&] { recognize(); });
   }
   test::TempFolder folder_;
 };
 
-/// "id=ID_%d.exr normal=..." of what was recognised.
+/// "id=ID_%d.exr normal=..." of what was recognized.
 std::string summary(const FolderLayout& layout) {
   std::string text;
   for (const auto& [name, spec] : layout.inputs) text += (text.empty() ? "" : " ") + name + "=" + spec.pattern.name();
   return text;
 }
 
-TEST_F(FolderLayoutOf, TheCourseIsRecognised) {
+TEST_F(FolderLayoutOf, TheCourseIsRecognized) {
   make({"beauty_0.exr", "beauty_10.exr", "normal_0.exr", "position_0.exr", "depth_0.exr", "ID_0.exr", "matrix_0.mat",
         "README.md"});
-  const FolderLayout layout = recognise();
+  const FolderLayout layout = recognize();
   EXPECT_EQ(layout.description, "GAMES202 course layout");
   EXPECT_EQ(
       summary(layout),
@@ -38,9 +38,9 @@ TEST_F(FolderLayoutOf, TheCourseIsRecognised) {
   EXPECT_EQ(layout.inputs.at("id").background, -1);
 }
 
-TEST_F(FolderLayoutOf, OurOwnRenderingsAreRecognised) {
+TEST_F(FolderLayoutOf, OurOwnRenderingsAreRecognized) {
   make({"color_1spp.0001.exr", "albedo.0001.exr", "id.0001.exr", "motion.0001.exr", "reference.0001.exr", "frame.0001.json"});
-  const FolderLayout layout = recognise();
+  const FolderLayout layout = recognize();
   EXPECT_EQ(layout.description, "one file for each buffer, with camera sidecars");
   EXPECT_EQ(summary(layout),
             "albedo=albedo.####.exr camera=frame.####.json color=color_1spp.####.exr id=id.####.exr motion=motion.####.exr "
@@ -50,13 +50,13 @@ TEST_F(FolderLayoutOf, OurOwnRenderingsAreRecognised) {
 TEST_F(FolderLayoutOf, AnyNamedAndNumberedExrIsAnInput) {
   make({"color.0001.exr", "cloud_shadow_3.exr", "my-file_3.exr", "7.exr", "notes_3.txt", "info_3.json", ".hidden_3.exr",
         "plain.exr"});
-  EXPECT_EQ(summary(recognise()), "cloud_shadow=cloud_shadow_%d.exr color=color.####.exr");
+  EXPECT_EQ(summary(recognize()), "cloud_shadow=cloud_shadow_%d.exr color=color.####.exr");
 }
 
 TEST_F(FolderLayoutOf, PaddingIsSeenByLeadingZeros) {
   make({"a.0998.exr", "a.1000.exr", "b_9.exr", "b_10.exr", "c.1000.exr", "c.1001.exr", "d.-0001.exr", "d.0000.exr", "e.0999.exr",
         "e.10000.exr"});
-  EXPECT_EQ(summary(recognise()), "a=a.####.exr b=b_%d.exr c=c.%d.exr d=d.####.exr e=e.####.exr");
+  EXPECT_EQ(summary(recognize()), "a=a.####.exr b=b_%d.exr c=c.%d.exr d=d.####.exr e=e.####.exr");
 }
 
 TEST_F(FolderLayoutOf, TwoFilesForAnInputAreAnErrorThatListsThem) {
@@ -79,12 +79,12 @@ TEST_F(FolderLayoutOf, AnInputNamedElsewhereIsNotAmbiguous) {
   make({"beauty_0.exr", "color.0001.exr", "normal.0001.exr"});
   InputSpecs elsewhere;
   elsewhere["color"];
-  EXPECT_EQ(summary(recognise(elsewhere)), "normal=normal.####.exr");
+  EXPECT_EQ(summary(recognize(elsewhere)), "normal=normal.####.exr");
 }
 
 TEST_F(FolderLayoutOf, AFolderWithoutASequenceSaysWhatWasExpected) {
   make({"README.md", "plain.exr"});
-  EXPECT_THAT(error(), HasSubstr("no sequence is recognised here; expected files such as color.0001.exr"));
+  EXPECT_THAT(error(), HasSubstr("no sequence is recognized here; expected files such as color.0001.exr"));
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ std::array<double, 4> transform(const Matrix& m, const std::array<double, 4>& p)
 struct Landing {
   long pixels = 0;
   double mean_x = 0, mean_y = 0;  // of the place within the pixel
-  double farthest = 0;            // largest distance from the centre along an axis
-  double strays = 0;              // share of pixels farther than `tolerance` from the centre
+  double farthest = 0;            // largest distance from the center along an axis
+  double strays = 0;              // share of pixels farther than `tolerance` from the center
   double depth_error = 0;         // largest relative difference of w and the depth buffer
 };
 
@@ -79,8 +79,8 @@ void expect_same(Sequence& a, Sequence& b, std::int64_t frame, const std::vector
 }
 
 // Snapping positions to 2^-14 m moves a point by up to 3.1e-5 m along each axis, at depth 2.4 m and 270 px focal length 0.004 px;
-// samples lie within 0.005 px of the centre. Their sum, 0.009 px, holds but for the filter's tail seen at grazing angles.
-TEST(SampleSequence, PointsLandOnTheirPixelsCentres) {
+// samples lie within 0.005 px of the center. Their sum, 0.009 px, holds but for the filter's tail seen at grazing angles.
+TEST(SampleSequence, PointsLandOnTheirPixelsCenters) {
   const auto sequence = Sequence::open(kSample);
   for (const std::int64_t frame : {1, 8}) {
     const Landing landing = land(*sequence, frame, 0.009);
@@ -119,7 +119,7 @@ TEST(SampleSequence, AllThreeWaysGiveTheSameItems) {
 }
 
 // The files are float32: a relative error of 6e-8 in each of a few products of about 2500 px, divided by a depth of at least 4.
-TEST(CourseSequence, PointsLandOnTheirPixelsCentres) {
+TEST(CourseSequence, PointsLandOnTheirPixelsCenters) {
   SKIP_WITHOUT(kCourse);
   const auto sequence = Sequence::open(kCourse);
   for (const std::int64_t frame : {0, 11}) {
@@ -171,7 +171,7 @@ TEST(CourseSequence, AllThreeWaysGiveTheSameItems) {
 }
 
 // As for the sample, at twice the resolution.
-TEST(RoomSequence, PointsLandOnTheirPixelsCentres) {
+TEST(RoomSequence, PointsLandOnTheirPixelsCenters) {
   SKIP_WITHOUT(kRoom);
   const auto sequence = Sequence::open(kRoom);
   const Landing landing = land(*sequence, 6, 0.013);

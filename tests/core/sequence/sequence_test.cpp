@@ -48,7 +48,7 @@ TEST_F(SequenceOf, AFolderServesItsInputs) {
   EXPECT_EQ(sequence->padding(), 4);
 }
 
-TEST_F(SequenceOf, WhatWasRecognisedCanBePrinted) {
+TEST_F(SequenceOf, WhatWasRecognizedCanBePrinted) {
   make_color("beauty_0.exr");
   make_color("beauty_1.exr");
   make_image("depth_0.exr", {"Y"}, 1);
