@@ -18,7 +18,7 @@ class FrameSource {
   /// The shape of an input, which must be the same for most frames (a frame that differs resets history); nothing when the
   /// source does not have the input at all. Throws Error when it should, but cannot be read.
   virtual std::optional<Shape> shape(std::string_view input) = 0;
-  /// The input in one frame, with finite pixels. Throws Error(Fault::input) when it is missing or unreadable.
+  /// The input in one frame; the session replaces NaN and infinity. Throws Error(Fault::input) when missing or unreadable.
   virtual Item read(std::string_view input, std::int64_t frame, BufferPool& pool) = 0;
 };
 
