@@ -56,7 +56,7 @@ class RawPort {
   std::vector<Values> numbers_;
 };
 
-// Memory for a slot's scratch may be left uninitialised, and is given back after each frame like any other buffer.
+// Memory for a slot's scratch may be left uninitialized, and is given back after each frame like any other buffer.
 struct Scratch {
   Buffer frame;
   Buffer slots;

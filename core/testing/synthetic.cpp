@@ -9,7 +9,7 @@
 namespace quell {
 namespace {
 
-// A well-mixed 32-bit hash (the finaliser of MurmurHash3), as a number in 0..1.
+// A well-mixed 32-bit hash (the finalizer of MurmurHash3), as a number in 0..1.
 float noise(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   std::uint32_t h = a * 0x9e3779b9u ^ (b + 0x7f4a7c15u) * 0x85ebca6bu ^ (c + 1) * 0xc2b2ae35u ^ (d + 1) * 0x27d4eb2fu;
   h ^= h >> 16, h *= 0x85ebca6bu, h ^= h >> 13, h *= 0xc2b2ae35u, h ^= h >> 16;

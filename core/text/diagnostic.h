@@ -56,7 +56,7 @@ class Diagnostics {
 };
 
 /// The names nearest to a misspelt one, best first, at most three; names that are not close are left out. Names that differ in
-/// case alone come first; else close means an edit distance (swapped neighbours count once) of at most a third of the length.
+/// case alone come first; else close means an edit distance (swapped neighbors count once) of at most a third of the length.
 std::vector<std::string> nearest(std::string_view misspelt, const std::vector<std::string>& names);
 /// "; did you mean 'sigma'?" for nearest(), or "" when nothing is close.
 std::string did_you_mean(std::string_view misspelt, const std::vector<std::string>& names);

@@ -13,7 +13,7 @@ bool equal_but_for_case(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return lower(x) == lower(y); });
 }
 
-// Damerau-Levenshtein distance (optimal string alignment): insertions, deletions, replacements, swapped neighbours.
+// Damerau-Levenshtein distance (optimal string alignment): insertions, deletions, replacements, swapped neighbors.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   std::iota(last.begin(), last.end(), std::size_t{0});

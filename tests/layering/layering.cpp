@@ -69,7 +69,7 @@ std::optional<Include> parse_include(std::string_view line) {
 std::string fault_in_quoted(const std::string& file, const std::string& box, const std::string& path) {
   const Names& allowed = kMayInclude.at(box);
   if (path.find("..") != std::string::npos) return "paths go down from the root or stay in their folder, never up";
-  if (path.find('/') == std::string::npos) return {};  // a neighbour
+  if (path.find('/') == std::string::npos) return {};  // a neighbor
   if (path.rfind("quell/", 0) == 0) {
     const std::string other = path.substr(6, path.find('/', 6) - 6);
     if (allowed.count(other) || box == "core/" + other) return {};

@@ -18,7 +18,7 @@ struct Params {
                   {"pixels", "leaves a pixel unwritten"},
                   {"chunks", "depends on the bands"},
                   {"strides", "takes rows for dense"},
-                  {"in_place", "reads a neighbour although it works in place"},
+                  {"in_place", "reads a neighbor although it works in place"},
                   {"memory", "remembers the last frame"},
                   {"optional", "fails without its optional input"},
                   {"threads", "adds in the order in which bands happen to end"}},
