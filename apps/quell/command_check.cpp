@@ -42,7 +42,6 @@ ExitCode run(const Arguments& arguments) {
     return kOk;
   }
   const Job job = prepare_job(graph, arguments.sequence);
-  for (const std::string& warning : job.sequence->warnings()) spdlog::warn(warning);
   tell_graph(*graph);
   tell_fit(job, arguments.sequence.sequence.empty() ? "--in" : arguments.sequence.sequence.string());
   return kOk;

@@ -64,7 +64,7 @@ ExitCode tell_interrupted(const Job& job, const std::vector<FrameReport>& report
   return kInterrupted;
 }
 
-ExitCode compute(const Job& job, const Arguments& arguments, int threads, FileSink& sink, const std::vector<ResultFiles>& results,
+ExitCode compute(Job& job, const Arguments& arguments, int threads, FileSink& sink, const std::vector<ResultFiles>& results,
                  Console& console) {
   SessionOptions options;
   options.threads = threads;
@@ -82,6 +82,7 @@ ExitCode compute(const Job& job, const Arguments& arguments, int threads, FileSi
   const std::vector<FrameReport> reports = session.run(job.frames, *job.sequence, sink);
   console.set_status("");
 
+  tell_new_warnings(job);
   tell_outcome({job, results, reports, sink.clamped_pixels(), progress.seconds(), session.pool().usage().peak});
   if (session.plan()) tell_node_times(*session.plan(), reports);
   if (reports.size() < job.frames.size()) return tell_interrupted(job, reports);
@@ -94,13 +95,12 @@ ExitCode run(const Arguments& arguments, Console& console) {
   set_verbosity(arguments.verbosity.verbosity());
   const int threads = parse_count(arguments.threads, "--threads", 0, kMostThreads);
   FileSinkOptions output = parse_output(arguments);
-  const Job job = prepare_job(load(arguments.graph), arguments.sequence, arguments.dumps);
+  Job job = prepare_job(load(arguments.graph), arguments.sequence, arguments.dumps);
   if (arguments.padding.empty()) output.padding = job.sequence->padding();
   FileSink sink(output);
   const std::vector<ResultFiles> results = list_results(job, sink, output);
   refuse_to_replace_inputs(job, results);
   if (arguments.dry_run) {
-    for (const std::string& warning : job.sequence->warnings()) spdlog::warn(warning);
     std::cout << describe_dry_run(job, results);
     return kOk;
   }

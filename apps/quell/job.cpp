@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 
 #include "graph_files.h"
 #include "quell/text/diagnostic.h"
@@ -128,6 +127,12 @@ void tell_choice(const Job& job) {
                FrameRange(job.frames).text());
 }
 
+InputShapes shapes_of(const Graph& graph, FrameSource& source) {
+  InputShapes shapes;
+  for (const GraphInput& input : graph.inputs) shapes[input.name] = source.shape(input.name);
+  return shapes;
+}
+
 }  // namespace
 
 std::shared_ptr<const Graph> load(const GraphArguments& arguments) {
@@ -135,10 +140,9 @@ std::shared_ptr<const Graph> load(const GraphArguments& arguments) {
   return load_graph(file, load_passes(arguments.plugins), arguments.options);
 }
 
-InputShapes shapes_of(const Graph& graph, FrameSource& source) {
-  InputShapes shapes;
-  for (const GraphInput& input : graph.inputs) shapes[input.name] = source.shape(input.name);
-  return shapes;
+void tell_new_warnings(Job& job) {
+  for (const std::string& warning : job.sequence->warnings())
+    if (job.told.insert(warning).second) spdlog::warn(warning);
 }
 
 Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arguments, const std::vector<std::string>& dumps) {
@@ -148,6 +152,7 @@ Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arg
   job.graph = graph;
   job.sequence = open_sequence(*graph, arguments);
   spdlog::info(job.sequence->describe());
+  tell_new_warnings(job);  // at once: they may explain the error that follows
   const std::vector<InputFiles> found = job.sequence->inputs();
   const std::string place = arguments.sequence.empty() ? "--in" : arguments.sequence.string();
   require_inputs(*graph, found, place);
@@ -155,6 +160,7 @@ Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arg
   job.inputs = select_inputs(job.plan, found);
   job.frames = choose_frames(*job.sequence, job.inputs, place);
   tell_choice(job);
+  tell_new_warnings(job);
   return job;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct Job {
   Plan plan;
   std::vector<InputFiles> inputs;    ///< the files of each input that is read, in the graph's order
   std::vector<std::int64_t> frames;  ///< to be computed
+  std::set<std::string> told;        ///< warnings of the sequence that were printed
 };
 
 /// Loads the plugins and the graph. Throws Error(plugin) or Error(usage).
@@ -28,7 +30,7 @@ std::shared_ptr<const Graph> load(const GraphArguments& arguments);
 Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arguments,
                 const std::vector<std::string>& dumps = {});
 
-/// Shapes of all inputs, as far as the source has them.
-InputShapes shapes_of(const Graph& graph, FrameSource& source);
+/// Prints the sequence's warnings that are new since the last call.
+void tell_new_warnings(Job& job);
 
 }  // namespace quell::app

@@ -70,7 +70,6 @@ std::vector<std::string> sum_up_warnings(const std::vector<FrameReport>& reports
 }
 
 void tell_outcome(const RunOutcome& outcome) {
-  for (const std::string& warning : outcome.job.sequence->warnings()) spdlog::warn(warning);
   for (const std::string& warning : sum_up_warnings(outcome.reports)) spdlog::warn(warning);
   if (outcome.clamped_pixels > 0)
     spdlog::warn("{} pixels were too bright for half floats and were clamped to 65504; --type float keeps them as they are",

@@ -131,6 +131,15 @@ TEST_F(Input, ThatDoesNotExistIsAnInputError) {
   EXPECT_THAT(pattern.err, HasSubstr("there is no file of this name for the input 'color'"));
 }
 
+TEST_F(Input, WhoseNumbersArePaddedInAnotherWayIsExplained) {
+  make_shot(2);
+  const Outcome outcome = run({"run", make_graph(), "--in", "color=" + text("shot/color.%d.exr"), "-o", text("out"), "-q"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err,
+              ::testing::StartsWith("warning: " + text("shot/color.%d.exr") + ": no file is named like this pattern"));
+  EXPECT_THAT(outcome.err, HasSubstr("\nerror: " + text("shot/color.%d.exr") + ": there is no file of this name"));
+}
+
 TEST_F(Input, ThatIsNoImageIsAnInputError) {
   write_file("shot/color.0001.exr", "not an image");
   const Outcome outcome = run({"run", make_graph(), text("shot"), "-o", text("out"), "-q"});
