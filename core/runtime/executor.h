@@ -14,8 +14,8 @@ class Executor {
   using Chunk = std::function<void(std::int64_t chunk, std::uint32_t slot)>;
 
   virtual ~Executor() = default;
-  /// Calls body(chunk, slot) once for every chunk in [0, chunks), and returns when all are done. A call from within a body runs
-  /// inline, with the caller's slot. `body` must not throw.
+  /// Calls body(chunk, slot) once for every chunk in [0, chunks), and returns when all are done. A call from within a body of
+  /// this executor runs inline, with the caller's slot. `body` must not throw.
   virtual void run(std::int64_t chunks, const Chunk& body) = 0;
   /// Slots are below this number; no two bodies at a time have the same one.
   virtual std::uint32_t slots() const = 0;

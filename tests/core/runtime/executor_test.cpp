@@ -73,6 +73,35 @@ TEST_P(ExecutorOf, TakesLoopsFromSeveralThreads) {
   EXPECT_EQ(count, 800);
 }
 
+TEST_P(ExecutorOf, TakesLoopsFromMoreThreadsThanItHas) {
+  const auto executor = make_executor(1, GetParam());
+  std::atomic<int> count = 0;
+  std::atomic<bool> strayed = false;
+  {
+    std::vector<std::jthread> callers;
+    for (int t = 0; t < 4; ++t)
+      callers.emplace_back([&] {
+        for (int i = 0; i < 20; ++i)
+          executor->run(10, [&](std::int64_t, std::uint32_t slot) { ++count, strayed = strayed || slot != 0; });
+      });
+  }
+  EXPECT_EQ(count, 800);
+  EXPECT_FALSE(strayed);
+}
+
+// A program may hold several sessions, and a source may use one of its own to serve another.
+TEST_P(ExecutorOf, KeepsSlotsOfItsOwnWithinABodyOfAnother) {
+  const auto outer = make_executor(4, GetParam()), inner = make_executor(1, GetParam());
+  std::atomic<bool> strayed = false;
+  std::atomic<int> count = 0;
+  outer->run(16, [&](std::int64_t, std::uint32_t slot) {
+    inner->run(3, [&](std::int64_t, std::uint32_t of_inner) { ++count, strayed = strayed || of_inner >= inner->slots(); });
+    outer->run(1, [&](std::int64_t, std::uint32_t nested) { strayed = strayed || nested != slot; });
+  });
+  EXPECT_EQ(count, 48);
+  EXPECT_FALSE(strayed);
+}
+
 // A race detector cannot follow oneTBB as Debian builds it.
 #ifdef __SANITIZE_THREAD__
 INSTANTIATE_TEST_SUITE_P(Threads, ExecutorOf, ::testing::Values(ThreadSource::threads));
