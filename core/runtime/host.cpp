@@ -33,7 +33,7 @@ quell_status Host::parallel_for(const quell_host* host, std::int64_t begin, std:
                                 quell_chunk_fn fn, void* context) {
   if (end <= begin) return QUELL_OK;
   if (self(host).services_.force_grain > 0) grain = self(host).services_.force_grain;
-  grain = std::max<std::int64_t>(grain, 1);
+  grain = std::clamp<std::int64_t>(grain, 1, end - begin);  // so that no sum below goes far past the end
   const std::int64_t chunks = (end - begin - 1) / grain + 1;
   std::mutex mutex;
   std::int64_t failed_chunk = std::numeric_limits<std::int64_t>::max();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cstring>
 
 namespace quell {
 namespace {
@@ -33,14 +32,16 @@ std::int64_t sanitize(Item& item, Executor& executor, BufferPool& pool) {
   if (count == 0) return 0;
 
   Image clean(image->type(), image->size(), pool);
-  std::memcpy(clean.writable_floats().data, image->floats().data, image->bytes());
+  const FloatImage in = image->floats();
   const FloatOutput out = clean.writable_floats();
   const float replacement = image->type() == QUELL_TYPE_DEPTH ? QUELL_NO_SURFACE_DEPTH : 0.0F;
-  for (int c = 0; c < out.channels; ++c)
-    for (int y = 0; y < out.height; ++y)
-      std::replace_if(
-          out.row(y, c), out.row(y, c) + out.width, [](float v) { return !is_finite(v); }, replacement);
-  item = clean;
+  executor.run(in.height, [&](std::int64_t row, std::uint32_t) {
+    const int y = static_cast<int>(row);
+    for (int c = 0; c < in.channels; ++c)
+      std::transform(in.row(y, c), in.row(y, c) + in.width, out.row(y, c),
+                     [&](float value) { return is_finite(value) ? value : replacement; });
+  });
+  item = std::move(clean);
   return count;
 }
 

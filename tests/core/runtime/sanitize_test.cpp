@@ -33,6 +33,21 @@ TEST_F(Sanitize, CountsAndReplacesWhatIsNotFinite) {
   EXPECT_EQ(image.floats().at(0, 0, 0), kInfinity) << "who else holds the image keeps it as it was";
 }
 
+TEST_F(Sanitize, HeedsStridesThatAreLargerThanUsual) {
+  Image image(QUELL_TYPE_COLOR, {5, 300}, pool, 3);
+  const FloatOutput pixels = image.writable_floats();
+  for (int c = 0; c < 3; ++c)
+    for (int y = 0; y < 300; ++y)
+      for (int x = 0; x < 5; ++x) pixels.at(x, y, c) = static_cast<float>(1000 * c + y);
+  pixels.at(4, 299, 2) = kNan;
+  Item item = image;
+  EXPECT_EQ(sanitize(item, *executor, pool), 1);
+  const FloatImage clean = item.image()->floats();
+  EXPECT_EQ(clean.at(4, 299, 2), 0.0F);
+  EXPECT_EQ(clean.at(3, 299, 2), 2299.0F);
+  EXPECT_EQ(clean.at(0, 17, 1), 1017.0F);
+}
+
 TEST_F(Sanitize, TakesADepthThatIsNotFiniteForNoSurface) {
   Image depth(QUELL_TYPE_DEPTH, {2, 1}, pool);
   depth.writable_floats().at(0, 0) = kInfinity;
