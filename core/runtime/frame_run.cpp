@@ -4,6 +4,14 @@
 #include <chrono>
 
 namespace quell {
+namespace {
+
+// Whether there is an item, of the type and size that were planned for.
+bool fits(const Item& item, const Shape& planned) {
+  return item && item.type() == planned.type && (!item.image() || item.image()->size() == planned.size);
+}
+
+}  // namespace
 
 FrameRun::FrameRun(Plan plan, const HostServices& services, BufferPool& pool)
     : plan_(std::move(plan)), pool_(pool), history_(plan_) {
@@ -31,6 +39,7 @@ void FrameRun::Values::drop(const Endpoint& endpoint) {
 
 FrameResult FrameRun::compute(std::int64_t frame, std::vector<Item> inputs, const Ahead& ahead) {
   FrameResult result;
+  history_.advance(frame - 1);  // what is left from an earlier time that this frame, or one after it, was computed, is void
   Values values{std::move(inputs), std::vector<PortItems>(plan_.graph->nodes.size())};
   for (std::size_t step = 0; step < plan_.nodes.size(); ++step) {
     const auto start = std::chrono::steady_clock::now();
@@ -47,15 +56,20 @@ void FrameRun::run_step(std::size_t step, std::int64_t frame, Values& values, co
   PortItems inputs(at.inputs.size());
   for (std::size_t port = 0; port < at.inputs.size(); ++port)
     for (const Edge& edge : at.inputs[port]) inputs[port].push_back(fetch(step, edge, frame, values, ahead));
+  const PlannedNode& planned = plan_.nodes[step];
   // Whoever reads a value last holds it alone, so that it may be overwritten in place or its memory used again at once.
-  for (const Endpoint& done : plan_.nodes[step].last_uses) values.drop(done);
-  runners_[step].run(frame, inputs, values.nodes[static_cast<std::size_t>(plan_.nodes[step].node)]);
+  for (const Endpoint& done : planned.last_uses)
+    if (done.node != planned.node) values.drop(done);
+  runners_[step].run(frame, inputs, values.nodes[static_cast<std::size_t>(planned.node)]);
+  for (const Endpoint& unread : planned.last_uses)
+    if (unread.node == planned.node) values.drop(unread);
 }
 
 Item FrameRun::fetch(std::size_t step, const Edge& edge, std::int64_t frame, const Values& values, const Ahead& ahead) {
   if (edge.delay == 0) return values.get(edge.from);
   Item item = edge.delay > 0 ? history_.find(edge.from, frame - edge.delay) : ahead(edge.from.port, -edge.delay);
-  return item ? item : initial(step, edge, values);
+  // History starts anew with another size, but what lies ahead may be of a size that the pass was not asked about.
+  return fits(item, plan_.shape(edge.from)) ? item : initial(step, edge, values);
 }
 
 Item FrameRun::initial(std::size_t step, const Edge& edge, const Values& values) {
@@ -65,11 +79,21 @@ Item FrameRun::initial(std::size_t step, const Edge& edge, const Values& values)
   if (!constant) {
     Shape shape = plan_.shape(edge.from);
     shape.type = plan_.graph->type(edge.from);
-    // The source of a pruned edge has no size; its reader's stands for it.
-    if (shape.size == Size{}) shape.size = plan_.nodes[step].outputs.front().front().size;
+    // The source of a pruned edge has no size; its reader's other images tell it.
+    if (!shape.present) shape.size = image_size(node(step));
     constant = make_constant(shape, edge.initial.constant);
   }
   return constant;
+}
+
+Size FrameRun::image_size(const Node& reader) const {
+  for (const std::vector<Edge>& port : reader.inputs)
+    for (const Edge& edge : port) {
+      Shape shape = plan_.shape(edge.from);
+      if (!shape.present && edge.initial.kind == Initial::Kind::endpoint) shape = plan_.shape(edge.initial.endpoint);
+      if (shape.present && is_image(shape.type)) return shape.size;
+    }
+  return {};
 }
 
 Item FrameRun::make_constant(const Shape& shape, const std::vector<double>& values) {

@@ -45,6 +45,8 @@ class FrameRun {
   void run_step(std::size_t step, std::int64_t frame, Values& values, const Ahead& ahead);
   Item fetch(std::size_t step, const Edge& edge, std::int64_t frame, const Values& values, const Ahead& ahead);
   Item initial(std::size_t step, const Edge& edge, const Values& values);
+  /// The one size of the images that a node reads.
+  Size image_size(const Node& reader) const;
   Item make_constant(const Shape& shape, const std::vector<double>& values);
   void keep_history(std::int64_t frame, const Values& values);
 

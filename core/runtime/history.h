@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <utility>
 
@@ -10,7 +9,8 @@
 
 namespace quell {
 
-/// Keeps as many frames of each endpoint as the plan's delays reach back.
+/// Keeps, of each endpoint, the frames that the plan's delays reach back to. A frame that is computed again replaces its former
+/// self; going back to an earlier one forgets those after it.
 class History {
  public:
   explicit History(const Plan& plan) {
@@ -20,25 +20,21 @@ class History {
   Item find(const Endpoint& from, std::int64_t frame) const {
     const auto line = lines_.find(from);
     if (line == lines_.end()) return {};
-    for (const auto& [number, item] : line->second.items)
-      if (number == frame) return item;
-    return {};
+    const auto item = line->second.items.find(frame);
+    return item == line->second.items.end() ? Item() : item->second;
   }
-  bool keeps(const Endpoint& from) const {
-    const auto line = lines_.find(from);
-    return line != lines_.end() && line->second.reach > 0;
-  }
-  void add(const Endpoint& from, std::int64_t frame, Item item) { lines_[from].items.emplace_back(frame, std::move(item)); }
-  /// Lets go of what no frame after `frame` can reach.
+  void add(const Endpoint& from, std::int64_t frame, Item item) { lines_[from].items.insert_or_assign(frame, std::move(item)); }
+  /// Lets go of what the frame after `frame` cannot reach.
   void advance(std::int64_t frame) {
     for (auto& [from, line] : lines_)
-      std::erase_if(line.items, [&, reach = line.reach](const auto& kept) { return kept.first + reach <= frame; });
+      std::erase_if(line.items,
+                    [&, reach = line.reach](const auto& kept) { return kept.first + reach <= frame || kept.first > frame; });
   }
 
  private:
   struct Line {
     int reach = 0;
-    std::deque<std::pair<std::int64_t, Item>> items;
+    std::map<std::int64_t, Item> items;  // by frame
   };
   std::map<Endpoint, Line> lines_;
 };

@@ -24,6 +24,7 @@ class RawPort {
       if (!shapes[i].present || shapes[i].type != QUELL_TYPE_VALUE) continue;
       numbers_[i].assign(shapes[i].value_count, 0.0);
       values_[i] = {sizeof(quell_values), shapes[i].value_count, numbers_[i].data()};
+      items_[i].type = QUELL_TYPE_VALUE;
       items_[i].values = &values_[i];
     }
   }
@@ -96,9 +97,9 @@ struct NodeRunner::Tables {
     if (const int source = layout.in_place_of[output]; source >= 0) {
       const std::vector<Item>& items = in[static_cast<std::size_t>(source)];
       const Image* image = item < items.size() ? items[item].image() : nullptr;
-      if (image && image->buffer().unique() && image->size() == shape.size &&
-          info(image->type()).channels == info(shape.type).channels)
-        return image->as(shape.type);
+      const bool fits = image && image->size() == shape.size && info(image->type()).channels == info(shape.type).channels &&
+                        info(image->type()).format == info(shape.type).format;
+      if (fits && image->buffer().unique()) return image->as(shape.type);
     }
     return Image(shape.type, shape.size, pool);
   }

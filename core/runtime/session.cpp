@@ -46,6 +46,7 @@ struct Session::State {
     Plan plan = make_plan(graph, shapes, options.dumps);
     if (frame_run && options.log) options.log(QUELL_LOG_INFO, "the size of the inputs changed: history starts anew");
     frame_run = std::make_unique<FrameRun>(std::move(plan), services, pool);
+    pool.trim();  // blocks of the former sizes would hardly be asked for again
     planned_for = shapes;
   }
 
@@ -66,7 +67,8 @@ struct Session::State {
   static bool same_shapes(const InputShapes& a, const InputShapes& b) {
     const auto same = [](const auto& x, const auto& y) {
       if (x.first != y.first || x.second.has_value() != y.second.has_value()) return false;
-      return !x.second || (x.second->size == y.second->size && x.second->value_count == y.second->value_count);
+      return !x.second || (x.second->type == y.second->type && x.second->size == y.second->size &&
+                           x.second->value_count == y.second->value_count);
     };
     return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), same);
   }

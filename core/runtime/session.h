@@ -40,9 +40,9 @@ class Session {
   ~Session();
   Session(Session&&) noexcept;
 
-  /// Computes the frames in the order given. A frame that cannot be read, computed or written is reported and harms no other; its
-  /// history counts as absent for those that follow. Returns a report for each frame, or fewer when cancelled. Throws
-  /// Error(usage) when the graph cannot run on what the source has.
+  /// Computes the frames in the order given. A frame that cannot be read, computed or written is reported and harms no other;
+  /// where it was not computed, its history counts as absent for those that follow. Returns a report for each frame, or fewer
+  /// when cancelled. Throws Error(usage) when the graph cannot run on what the source has.
   std::vector<FrameReport> run(const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink);
 
   /// In memory: computes one frame from its inputs by name, and returns the outputs and dumps by name. Throws Error(usage) when
