@@ -2,13 +2,13 @@
 // Source:  p_prev = M_prev(id) inverse(M_cur(id)) p, projected by the previous frame's world-to-screen matrix: the back
 //          projection of GAMES202 (Real-Time High Quality Rendering, 2021), known from Nehab et al., Graphics Hardware 2007.
 // Departs: jitter is taken out of both positions, so that a scene at rest has motion 0 whatever the cameras' jitter.
-// Cost:    9 multiplications and 2 divisions in double a pixel; one 4x4 inverse for each object that moved.
+// Cost:    9 multiplications and 2 divisions in double a pixel; one 4x4 inverse
+//          wherever a row comes to another object that moved.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "quell/sdk/pass.h"
 
@@ -115,36 +115,27 @@ Point project(const Matrix& m, double x, double y, double z) {
   return {(m[0] * x + m[1] * y + m[2] * z + m[3]) / w, (m[4] * x + m[5] * y + m[6] * z + m[7]) / w, w > 0};
 }
 
-// Present world positions to previous pixels, for the camera alone and for every object that moved. Their number is known no
-// earlier than the frame, so this list, and nothing else, is allocated for each frame.
+const double* find_object(const quell_camera& camera, std::uint32_t id) {
+  const std::uint32_t *begin = camera.object_ids, *end = begin + camera.object_count;
+  const std::uint32_t* at = std::lower_bound(begin, end, id);
+  return at != end && *at == id ? camera.object_to_world + 16 * (at - begin) : nullptr;
+}
+
+// Present world positions to previous pixels, for the camera alone and for objects that moved.
 class Projections {
  public:
   Projections(const quell_camera& now, const quell_camera& before, int width, int height)
-      : still_(world_to_pixel(before, width, height)) {
-    for (std::uint32_t i = 0, j = 0; i < now.object_count && j < before.object_count;) {
-      const std::uint32_t id = now.object_ids[i];
-      if (id != before.object_ids[j]) {
-        ++(id < before.object_ids[j] ? i : j);
-        continue;
-      }
-      const Matrix m_now = matrix(now.object_to_world + std::size_t{16} * i++);
-      const Matrix m_before = matrix(before.object_to_world + std::size_t{16} * j++);
-      if (m_now != m_before) moved_.push_back({id, still_ * (m_before * inverse(m_now))});
-    }
-  }
+      : now_(now), before_(before), still_(world_to_pixel(before, width, height)) {}
   const Matrix& still() const { return still_; }
-  const Matrix& of(std::uint32_t id) const {
-    const auto at = std::lower_bound(moved_.begin(), moved_.end(), id, [](const Moved& m, std::uint32_t x) { return m.id < x; });
-    return at != moved_.end() && at->id == id ? at->matrix : still_;
+  Matrix of(std::uint32_t id) const {
+    const double *now = find_object(now_, id), *before = find_object(before_, id);
+    if (!now || !before || matrix(now) == matrix(before)) return still_;
+    return still_ * (matrix(before) * inverse(matrix(now)));
   }
 
  private:
-  struct Moved {
-    std::uint32_t id;
-    Matrix matrix;
-  };
+  const quell_camera &now_, &before_;
   Matrix still_;
-  std::vector<Moved> moved_;  // ascending ids
 };
 
 class BackProjectPass final : public Pass {
@@ -193,15 +184,15 @@ class BackProjectPass final : public Pass {
     const float *px = job.position.row(y, 0), *py = job.position.row(y, 1), *pz = job.position.row(y, 2);
     const std::uint32_t* ids = job.id ? job.id.row(y) : nullptr;
     float *out_x = job.motion.row(y, 0), *out_y = job.motion.row(y, 1);
-    const Matrix* previous = &job.previous.still();
+    Matrix previous = job.previous.still();  // of the last object met: neighbors mostly show the same one
     std::uint32_t last_id = QUELL_NO_ID;
     for (int x = 0; x < job.motion.width; ++x) {
       if (ids && ids[x] == QUELL_NO_ID) {
         out_x[x] = out_y[x] = 0;
         continue;
       }
-      if (ids && ids[x] != last_id) previous = &job.previous.of(last_id = ids[x]);
-      const Point before = project(*previous, px[x], py[x], pz[x]);
+      if (ids && ids[x] != last_id) previous = job.previous.of(last_id = ids[x]);
+      const Point before = project(previous, px[x], py[x], pz[x]);
       Point now{job.center[0] + x, job.center[1] + y, true};
       if (current_ == Current::projected) now = project(job.current, px[x], py[x], pz[x]);
       const double dx = before.x - now.x, dy = before.y - now.y;
