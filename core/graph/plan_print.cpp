@@ -43,9 +43,9 @@ class Printer {
 
   std::string title() const {
     const std::string file = graph_.file.string();
-    std::string text = graph_.name.empty() ? file : graph_.name + (file.empty() ? "" : "  (" + file + ")");
+    std::string text = graph_.name.empty() ? file : printable(graph_.name) + (file.empty() ? "" : "  (" + file + ")");
     if (!text.empty()) text += "\n";
-    return text + wrap(graph_.doc, 0);
+    return text + wrap(printable(graph_.doc), 0);
   }
 
   std::string inputs() const {

@@ -15,15 +15,6 @@ constexpr std::size_t kContextBytes = 70;
 
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
-// Control characters and broken UTF-8 must not reach a terminal.
-std::string printable(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if ((static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f) c = '?';
-  for (std::size_t bad; (bad = detail::first_invalid_utf8(result)) < result.size();) result[bad] = '?';
-  return result;
-}
-
 std::string_view line_at(const Position& where, std::size_t& column) {
   const std::string_view text = where.source->text;
   const std::size_t offset = std::min(where.offset, text.size());
@@ -64,6 +55,14 @@ std::string prefix(const Position& where) {
 
 }  // namespace
 
+std::string printable(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    if ((static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n') || c == 0x7f) c = '?';
+  for (std::size_t bad; (bad = detail::first_invalid_utf8(result)) < result.size();) result[bad] = '?';
+  return result;
+}
+
 int Position::line() const {
   if (!source) return 0;
   const std::string& text = source->text;
@@ -101,9 +100,9 @@ std::vector<const Diagnostics::Entry*> Diagnostics::by_place() const {
 }
 
 std::string Diagnostics::render(const Entry& entry) {
-  std::string result = prefix(entry.where) + "error: " + entry.message;
+  std::string result = prefix(entry.where) + "error: " + printable(entry.message);
   if (entry.where.source) result += "\n" + quote(entry.where);
-  for (const Note& note : entry.notes) result += "\n" + prefix(note.where) + "note: " + note.message;
+  for (const Note& note : entry.notes) result += "\n" + prefix(note.where) + "note: " + printable(note.message);
   return result;
 }
 

@@ -55,6 +55,9 @@ class Diagnostics {
   std::vector<Entry> entries_;
 };
 
+/// The text with control characters but line feeds and tabs, and broken UTF-8, replaced by '?': what may reach a terminal.
+std::string printable(std::string_view text);
+
 /// The names nearest to a misspelt one, best first, at most three; names that are not close are left out. Names that differ in
 /// case alone come first; else close means an edit distance (swapped neighbors count once) of at most a third of the length.
 std::vector<std::string> nearest(std::string_view misspelt, const std::vector<std::string>& names);
