@@ -1,6 +1,7 @@
 #include "quell/graph/absent.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace quell::detail {
 namespace {
@@ -14,8 +15,7 @@ class Pruner {
     for (std::size_t i = 0; i < connections.outputs.size(); ++i)
       if (comes_from_nothing(connections.outputs[i])) tell(connections.outputs[i], graph_.root.document->outputs[i], errors);
     for (Leaf& leaf : graph_.leaves)
-      for (std::vector<Arrival>& port : leaf.inputs)
-        if (lacks_source(port)) port.clear();
+      for (std::size_t input = 0; input < leaf.inputs.size(); ++input) disconnect(leaf, input);
     for (Leaf& leaf : graph_.leaves)
       for (std::vector<Arrival>& port : leaf.inputs)
         for (Arrival& arrival : port)
@@ -29,8 +29,16 @@ class Pruner {
     if (arrival.state == Arrival::State::absent) return true;
     return arrival.state == Arrival::State::connected && is_absent(arrival.edge.from.node);
   }
-  bool lacks_source(const std::vector<Arrival>& port) const {
-    return std::any_of(port.begin(), port.end(), [&](const Arrival& arrival) { return comes_from_nothing(arrival); });
+  // An element of a list keeps its place, since elements of outputs may follow it.
+  void disconnect(Leaf& leaf, std::size_t input) const {
+    std::vector<Arrival>& port = leaf.inputs[input];
+    const PortType any = static_cast<PortType>(std::countr_zero(leaf.input(input).types));
+    for (Arrival& arrival : port)
+      if (comes_from_nothing(arrival))
+        arrival.state = Arrival::State::absent, arrival.edge.from = Endpoint::nothing(arrival.type.value_or(any)),
+        arrival.edge.delay = 1, arrival.edge.initial = {};
+    if (!(leaf.input(input).flags & QUELL_PORT_ARRAY))
+      std::erase_if(port, [](const Arrival& arrival) { return arrival.state == Arrival::State::absent; });
   }
   bool has_lost_initial(const Arrival& arrival) const {
     return arrival.edge.initial.kind == Initial::Kind::endpoint && is_absent(arrival.edge.initial.endpoint.node);

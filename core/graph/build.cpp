@@ -29,8 +29,11 @@ void tell_cycle(const Unfolded& graph, const std::vector<int>& cycle, Diagnostic
   for (const std::vector<Arrival>& port : leaf(cycle[0]).inputs)
     for (const Arrival& arrival : port) {
       if (needed_leaf(arrival) != source) continue;
-      errors.error(arrival.edge.delay == 0 ? arrival.edge.where : arrival.initial_where,
-                   "this closes a cycle: " + path + "; expected a \"delay\" on one of these edges",
+      const bool is_initial = arrival.edge.delay != 0;
+      errors.error(is_initial ? arrival.initial_where : arrival.edge.where,
+                   (is_initial ? "this initial value, which is of the same frame, closes a cycle: " + path +
+                                     "; expected one that does not depend on '" + leaf(cycle[0]).name + "'"
+                               : "this closes a cycle: " + path + "; expected a \"delay\" on one of these edges"),
                    leaf(cycle[0]).scope->included_from());
       return;
     }

@@ -1,6 +1,6 @@
 #include "quell/graph/document.h"
 
-#include <algorithm>
+#include <map>
 
 #include "quell/graph/fields.h"
 
@@ -124,11 +124,18 @@ class Reader {
   }
 
   void check_names() {
-    for (const WrittenNode& node : document_.nodes)
-      for (const GraphInput& input : document_.inputs)
-        if (node.name.text == input.name)
-          errors_.error(node.name.where, "the node '" + input.name + "' has the name of the input in line " +
-                                             std::to_string(input.where.line()) + "; expected another name for one of them");
+    std::map<std::string_view, const GraphInput*> inputs;
+    for (const GraphInput& input : document_.inputs) inputs.emplace(input.name, &input);
+    for (const WrittenNode& node : document_.nodes) {
+      if (node.name.text == "input")
+        errors_.error(node.name.where,
+                      "a node cannot be called 'input': 'input.color' is the graph input 'color' among the results; expected "
+                      "another name");
+      if (const auto same = inputs.find(node.name.text); same != inputs.end())
+        errors_.error(node.name.where, "the node '" + node.name.text + "' has the name of the input in line " +
+                                           std::to_string(same->second->where.line()) +
+                                           "; expected another name for one of them");
+    }
   }
 
   Document document_;

@@ -11,6 +11,9 @@
 
 namespace quell::detail {
 
+inline constexpr int kLongestDelay = 10'000;                       // frames; every one of them is kept in memory
+inline constexpr std::size_t kLargestFile = std::size_t{8} << 20;  // bytes, as text; read, it takes a hundred times that
+
 /// A string of the file.
 struct Text {
   std::string text;

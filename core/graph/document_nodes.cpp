@@ -8,8 +8,6 @@
 namespace quell::detail {
 namespace {
 
-constexpr std::int64_t kLongestDelay = 10'000;  // frames; every one of them is kept in memory
-
 std::optional<WrittenInitial> read_initial(const Json& value, Diagnostics& errors) {
   const std::string expected = "; expected \"none\", {\"constant\": [...]} or {\"from\": \"node.port\"}";
   WrittenInitial initial;
@@ -45,7 +43,7 @@ bool read_delay(const Fields& fields, WrittenEdge& edge, Diagnostics& errors) {
   const Json* delay = fields.find("delay", Json::Kind::integer);
   if (!delay) return false;
   edge.delay_where = delay->where;
-  edge.delay = static_cast<int>(std::clamp(delay->integer, -kLongestDelay, kLongestDelay));
+  edge.delay = static_cast<int>(std::clamp(delay->integer, -std::int64_t{kLongestDelay}, std::int64_t{kLongestDelay}));
   if (edge.delay == delay->integer) return true;
   errors.error(delay->where,
                "a delay of " + excerpt(*delay) + " frames is too long; the most is " + std::to_string(kLongestDelay));
@@ -61,6 +59,8 @@ std::optional<WrittenEdge> read_delayed_edge(const Json& value, Diagnostics& err
   bool is_whole = from.has_value() && !fields.has_unknown();
   if (fields.any("delay")) is_whole = read_delay(fields, edge, errors) && is_whole;
   if (const Json* initial = fields.any("initial")) {
+    if (!fields.any("delay") && !fields.has_unknown())
+      errors.error(initial->where, "only an edge with a delay has an initial value; expected \"delay\": 1 beside it");
     edge.initial = read_initial(*initial, errors);
     is_whole = is_whole && edge.initial;
   } else if (edge.delay != 0) {

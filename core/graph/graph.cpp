@@ -14,7 +14,10 @@ const Node& node_at(const Graph& graph, int node) { return graph.nodes.at(static
 class NodeView final : public detail::FollowedGraph {
  public:
   explicit NodeView(const Graph& graph) : graph_(graph) {}
-  PortType input_type(int input) const override { return graph_.inputs.at(static_cast<std::size_t>(input)).type; }
+  PortType input_type(int input) const override {
+    if (input < 0) return static_cast<PortType>(-1 - input);  // Endpoint::nothing
+    return graph_.inputs.at(static_cast<std::size_t>(input)).type;
+  }
   const quell_pass_desc* pass(int node) const override { return node_at(graph_, node).pass; }
   detail::FollowedSource source(int node, int input, int item) const override {
     const std::vector<Edge>& edges = node_at(graph_, node).inputs.at(static_cast<std::size_t>(input));
@@ -44,6 +47,7 @@ std::vector<Endpoint> endpoints(const Graph& graph) {
 }  // namespace
 
 std::string Graph::describe(const Endpoint& endpoint) const {
+  if (endpoint.is_nothing()) return "nothing";
   if (endpoint.node < 0) return inputs.at(static_cast<std::size_t>(endpoint.port)).name;
   const Node& node = node_at(*this, endpoint.node);
   const quell_port_desc& output = *QUELL_AT(quell_port_desc, node.pass->outputs, endpoint.port);
@@ -87,7 +91,7 @@ std::shared_ptr<const Graph> parse_graph(const SourceTextPtr& source, const Regi
 }
 
 std::shared_ptr<const Graph> load_graph(const std::filesystem::path& file, const Registry& passes, const GraphOptions& options) {
-  return parse_graph(read_text(file, Fault::usage), passes, options);
+  return parse_graph(read_text(file, Fault::usage, detail::kLargestFile), passes, options);
 }
 
 }  // namespace quell

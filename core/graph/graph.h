@@ -19,8 +19,12 @@ namespace quell {
 /// Something that yields an item: output `port` of a node, or a graph input.
 struct Endpoint {
   int node = -1;  ///< index into Graph::nodes; -1 for a graph input
-  int port = 0;   ///< index of the node's output, or of the graph's input
+  int port = 0;   ///< index of the node's output, or of the graph's input; below 0 for nothing()
   int item = 0;   ///< element of an output that is an array
+  /// Feeds an element of a list whose source, an optional input of a subgraph, is not connected. Such an edge has a delay and no
+  /// initial value, so that whoever fetches it finds nothing.
+  static Endpoint nothing(PortType type) { return {-1, -1 - static_cast<int>(type), 0}; }
+  bool is_nothing() const { return port < 0; }
   bool operator==(const Endpoint&) const = default;
   auto operator<=>(const Endpoint&) const = default;
 };

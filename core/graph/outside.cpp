@@ -59,7 +59,7 @@ std::vector<Setting> read_outside(const GraphOptions& options, Diagnostics& erro
   std::vector<Setting> settings;
   for (const std::filesystem::path& file : options.params) {
     try {
-      const SourceTextPtr source = read_text(file, Fault::usage);
+      const SourceTextPtr source = read_text(file, Fault::usage, kLargestFile);
       const std::optional<Json> root = parse_json(source, errors);
       if (root && expect(*root, Json::Kind::object, "a file of parameters", errors))
         flatten(*root, "", file.parent_path(), settings);

@@ -19,6 +19,7 @@ Presence::Presence(const Graph& graph, const std::vector<Shape>& inputs) : graph
 }
 
 bool Presence::has(const Endpoint& endpoint) const {
+  if (endpoint.is_nothing()) return false;
   if (endpoint.node < 0) return inputs_[static_cast<std::size_t>(endpoint.port)];
   return has_node(endpoint.node) && !items_.contains(endpoint);
 }
@@ -75,6 +76,7 @@ std::string Presence::why_absent(Endpoint endpoint) const {
     chain += "'" + name + "' needs '" + graph_.describe(cause.from) + "' as '" + cause.input + "', ";
     endpoint = cause.from;
   }
+  if (endpoint.is_nothing()) return chain + "and that optional input of a subgraph is not connected";
   return chain + (chain.empty() ? "" : "and ") + "the source does not have '" + graph_.describe(endpoint) + "'";
 }
 

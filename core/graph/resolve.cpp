@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
 
 #include "quell/graph/fields.h"
 
 namespace quell::detail {
 namespace {
+
+constexpr std::size_t kLongestChain = 200;  // of subgraphs that hand on what they are given; the resolver recurses along it
 
 std::vector<std::string> output_names(const Leaf& leaf) {
   std::vector<std::string> names;
@@ -140,6 +143,9 @@ Arrival Resolver::from_subgraph(const Scope& scope, const Text& source, const Sc
     if (!is_new)
       return tell(scope, source.where,
                   "'" + source.text + "' leads through subgraphs back to itself; expected a source that a pass computes");
+    if (under_way_.size() > kLongestChain)
+      return tell(scope, source.where,
+                  "'" + source.text + "' leads through more than " + std::to_string(kLongestChain) + " outputs of subgraphs");
     Arrival arrival = resolve(inner, output.from);
     under_way_.erase({&inner, output.name.text});
     return arrival;
@@ -149,6 +155,12 @@ Arrival Resolver::from_subgraph(const Scope& scope, const Text& source, const Sc
 }
 
 Arrival Resolver::resolve(const Scope& scope, const WrittenEdge& edge) {
+  const std::pair key(&scope, &edge);
+  if (const auto known = known_.find(key); known != known_.end()) return known->second;
+  return known_.emplace(key, follow(scope, edge)).first->second;
+}
+
+Arrival Resolver::follow(const Scope& scope, const WrittenEdge& edge) {
   Arrival arrival = resolve(scope, edge.from);
   if (edge.delay != 0) return delay(scope, edge, std::move(arrival));
   if (arrival.edge.delay == 0) arrival.initial_where = edge.where;
@@ -187,6 +199,10 @@ Arrival Resolver::delay(const Scope& scope, const WrittenEdge& edge, Arrival arr
                     " frames already where this graph is used; a second delay must have the same sign and the same "
                     "initial value, \"none\" or a constant");
   arrival.edge.delay += edge.delay;
+  if (std::abs(arrival.edge.delay) > kLongestDelay)
+    return tell(scope, edge.delay_where,
+                "'" + edge.from.text + "' is delayed by " + std::to_string(before) + " frames already, which makes " +
+                    std::to_string(arrival.edge.delay) + "; the most is " + std::to_string(kLongestDelay));
   arrival.edge.initial = std::move(initial);
   arrival.edge.where = edge.where;
   arrival.initial_where = edge.initial->where;

@@ -1,7 +1,9 @@
 // One source looked up. Private to this box.
 #pragma once
 
+#include <map>
 #include <set>
+#include <utility>
 
 #include "quell/graph/scope.h"
 
@@ -17,6 +19,7 @@ class Resolver {
   Arrival resolve(const Scope& scope, const Text& source);
 
  private:
+  Arrival follow(const Scope& scope, const WrittenEdge& edge);
   Arrival from_input(const Scope& scope, int input);
   Arrival from_node(const Scope& scope, const Text& source, std::string_view node, std::string_view port);
   Arrival from_leaf(const Scope& scope, const Text& source, int leaf, std::string_view port);
@@ -28,6 +31,8 @@ class Resolver {
 
   const Unfolded& graph_;
   Diagnostics& errors_;
+  // An edge may be come by in many ways, each through a source and an initial value: as many as 2^n through n subgraphs.
+  std::map<std::pair<const Scope*, const WrittenEdge*>, Arrival> known_;
   std::set<std::pair<const Scope*, std::string>> under_way_;  // outputs of subgraphs, to notice those that feed themselves
 };
 

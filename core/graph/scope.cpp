@@ -1,6 +1,7 @@
 #include "quell/graph/scope.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "quell/graph/fields.h"
 #include "quell/graph/versions.h"
@@ -10,6 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kDeepestGraph = 50;   // graphs within graphs
 constexpr std::size_t kMostNodes = 10'000;  // files that include each other repeatedly grow without end
 
 // The same file by whatever way it is named.
@@ -59,16 +61,25 @@ class Unfolder {
                   "the graph has more than " + std::to_string(kMostNodes) + " nodes, those of its subgraphs included");
   }
 
+  std::nullptr_t refuse(const Scope& scope, const WrittenNode& node, std::string why) {
+    errors_.error(node.graph->where, std::move(why), scope.included_from());
+    return nullptr;
+  }
+
   std::unique_ptr<Scope> include(const Scope& scope, const WrittenNode& node, Chain chain) {
-    const fs::path file = (scope.document->folder() / node.graph->text).lexically_normal();
+    const std::string& path = node.graph->text;
+    if (path.empty() || path.find('\0') != std::string::npos)
+      return refuse(scope, node, "this names no file; expected the path of a graph, from this file's folder");
+    if (chain.size() > kDeepestGraph)
+      return refuse(scope, node, "graphs are nested more than " + std::to_string(kDeepestGraph) + " deep");
+    const fs::path file = (scope.document->folder() / path).lexically_normal();
     const fs::path key = identity(file);
     chain.push_back({key, file.string()});
     if (const auto first = std::find_if(chain.begin(), chain.end() - 1, [&](const Inclusion& i) { return i.key == key; });
         first != chain.end() - 1) {
       std::string names = first->name;
       for (auto next = first + 1; next != chain.end(); ++next) names += " -> " + next->name;
-      errors_.error(node.graph->where, "a graph cannot include itself: " + names, scope.included_from());
-      return nullptr;
+      return refuse(scope, node, "a graph cannot include itself: " + names);
     }
     const std::optional<Document>& document = load(file, key, *node.graph, scope);
     if (!document) return nullptr;
@@ -84,7 +95,7 @@ class Unfolder {
     const auto [it, is_new] = result_->documents.try_emplace(key);
     if (!is_new) return it->second;
     try {
-      it->second = read_document(read_text(file, Fault::usage), errors_);
+      it->second = read_document(read_text(file, Fault::usage, kLargestFile), errors_);
     } catch (const Error& error) {
       const std::string reason = std::string(error.what()).substr(error.where().size() + 2);  // behind "file: "
       errors_.error(named.where, "the graph '" + file.string() + "' " + reason, scope.included_from());

@@ -1,5 +1,7 @@
 #include "quell/graph/settings.h"
 
+#include <algorithm>
+
 #include "quell/graph/fields.h"
 #include "quell/graph/versions.h"
 
@@ -71,9 +73,13 @@ void Settings::apply(const Setting& setting) {
 std::vector<Settings::Slot> Settings::find_own(const Scope& scope, const Text& target, std::string_view name) {
   for (const WrittenParam& param : scope.document->params) {
     if (param.name.text != name) continue;
-    std::vector<Slot> slots;
+    const auto [known, is_new] = own_.try_emplace({&scope, &param});
+    std::vector<Slot>& slots = known->second;
+    if (!is_new) return slots;
     for (const Text& inner : param.sets)
       for (const Slot& slot : find(scope, inner, inner.text)) slots.push_back(slot);
+    std::sort(slots.begin(), slots.end());
+    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
     return slots;
   }
   std::vector<std::string> names = own_params(scope);

@@ -2,6 +2,9 @@
 // comes from outside. Private to this box.
 #pragma once
 
+#include <map>
+#include <utility>
+
 #include "quell/graph/parameters.h"
 #include "quell/graph/scope.h"
 
@@ -28,6 +31,7 @@ class Settings {
   struct Slot {
     Leaf* leaf;
     std::uint32_t param;
+    auto operator<=>(const Slot&) const = default;
   };
   void apply_files(const Scope& scope);
   void apply_former_defaults(Leaf& leaf);
@@ -40,6 +44,8 @@ class Settings {
 
   Unfolded& graph_;
   Diagnostics& errors_;
+  // What each graph's parameter sets, each slot once: through n subgraphs there may be 2^n ways to it.
+  std::map<std::pair<const Scope*, const WrittenParam*>, std::vector<Slot>> own_;
   std::vector<Note> notes_;  // of the scope whose settings are being applied
 };
 

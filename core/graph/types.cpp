@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "quell/graph/follow_type.h"
 
@@ -60,6 +61,7 @@ class Checker {
     const auto tell = [&](const std::string& message) { errors_.error(arrival.initial_where, message, scope.included_from()); };
     const int channels = info(type).channels;
     const auto is_id = [](double value) { return value >= 0 && value <= double{QUELL_NO_ID} && std::trunc(value) == value; };
+    const auto is_float = [](double value) { return std::abs(value) <= double{std::numeric_limits<float>::max()}; };
     if (type == QUELL_TYPE_CAMERA) {
       tell("there are no constants of type camera; expected \"none\" or {\"from\": \"node.port\"}");
     } else if (constant.empty() ||
@@ -68,6 +70,8 @@ class Checker {
                                 : channels == 1 ? "1 number"
                                                 : "at least 1 number";
       tell("a constant of type " + std::string(name(type)) + " takes " + count + ", got " + std::to_string(constant.size()));
+    } else if (is_image(type) && type != QUELL_TYPE_ID && !std::all_of(constant.begin(), constant.end(), is_float)) {
+      tell("a constant of type " + std::string(name(type)) + " takes numbers that fit a float, up to about 3.4e38");
     } else if (type == QUELL_TYPE_ID && !std::all_of(constant.begin(), constant.end(), is_id)) {
       tell("a constant of type id takes an integer from 0 to 4294967295");
     }

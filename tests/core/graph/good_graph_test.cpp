@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "quell/graph/plan.h"
 #include "tests/core/graph/graph_text.h"
 #include "tests/core/graph/test_passes.h"
 
@@ -123,6 +124,31 @@ TEST_F(GoodGraph, ConnectsPortArrays) {
   EXPECT_EQ(type("merge.parts[0]"), "color");
   EXPECT_EQ(type("merge.parts[1]"), "albedo");
   EXPECT_EQ(type("second.image"), "albedo");
+}
+
+// Elements of the output that mirrors the list keep their places, too.
+TEST_F(GoodGraph, LeavesOutTheElementsOfAListThatAreNotConnectedAndNoOthers) {
+  load("absent_elements");
+  EXPECT_THAT(sources("inner.split", "items"), ElementsAre("nothing@1 none", "nothing@1 none", "color"));
+  EXPECT_EQ(type("inner.split.parts[0]"), "albedo");
+  EXPECT_EQ(type("inner.split.parts[2]"), "color");
+  const Plan plan = make_plan(graph, {{"color", Shape{.type = QUELL_TYPE_COLOR, .size = {8, 8}}}});
+  EXPECT_FALSE(plan.shape(graph->find("inner.split.parts[0]")).present);
+  EXPECT_FALSE(plan.shape(graph->find("inner.split.parts[1]")).present);
+  EXPECT_TRUE(plan.shape(graph->find("inner.split.parts[2]")).present);
+  EXPECT_THAT(describe(plan), testing::HasSubstr("items[0]  <-  nothing"));
+}
+
+TEST_F(GoodGraph, TellsThatAnElementWhichIsNotConnectedCannotBeDumped) {
+  load("absent_elements");
+  try {
+    make_plan(graph, {{"color", Shape{.type = QUELL_TYPE_COLOR, .size = {8, 8}}}}, {"inner.split.parts[1]"});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "error: 'inner.split.parts[1]' cannot be dumped: 'inner.split' needs 'nothing' as 'items[1]', and that optional "
+                 "input of a subgraph is not connected");
+  }
 }
 
 TEST_F(GoodGraph, LooksAheadOnItsInputs) {

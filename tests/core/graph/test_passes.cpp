@@ -97,6 +97,9 @@ const PassInfo kMerge{.id = "merge",
                       .inputs = {{.name = "colors", .types = kColor | kAlbedo, .array = true},
                                  {.name = "extra", .types = kAnyImage, .optional = true, .array = true}},
                       .outputs = {{.name = "parts", .array = true, .same_as = "colors"}, {"sum", kColor}}};
+const PassInfo kSplit{.id = "split",
+                      .inputs = {{.name = "items", .types = kAnyFloatImage, .optional = true, .array = true}},
+                      .outputs = {{.name = "parts", .array = true, .same_as = "items"}}};
 const PassInfo kCopy{.id = "copy", .inputs = {{"image", kAnyImage}}, .outputs = {{.name = "image", .same_as = "image"}}};
 const PassInfo kMeter{.id = "meter",
                       .inputs = {{"color", kAnyFloatImage}, {.name = "previous", .types = kValue, .optional = true}},
@@ -113,7 +116,8 @@ Registry make_registry() {
                                                 plain<2>(kMerge),
                                                 plain<3>(kCopy),
                                                 plain<4>(kMeter),
-                                                plain<5>(kSelect)};
+                                                plain<5>(kSelect),
+                                                plain<6>(kSplit)};
   Registry registry;
   registry.add(all.data(), static_cast<std::uint32_t>(all.size()));
   return registry;
