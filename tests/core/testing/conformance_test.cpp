@@ -27,6 +27,11 @@ TEST(Conformance, FindsAPassThatReadsFartherThanItSays) {
   EXPECT_THAT(check_bad_values(offender("radius")), Contains(HasSubstr("when NaN and infinity are put into a pixel of 'color'")));
 }
 
+TEST(Conformance, FindsAPassThatReadsFartherInAnArray) {
+  EXPECT_THAT(check_radius(offender("array")),
+              Contains(HasSubstr("when another value is put into a pixel of 'extra' at (4, 3)")));
+}
+
 TEST(Conformance, FindsAPixelThatIsNotWritten) {
   EXPECT_THAT(check_sizes(offender("pixels")),
               Contains(HasSubstr("color[0] is not written, or not finite, at (16, 8) on 17 x 9 pixels")));

@@ -7,7 +7,7 @@
 namespace {
 using namespace quell;
 
-enum class Offence { none, radius, pixels, chunks, strides, in_place, memory, optional, threads };
+enum class Offence { none, radius, array, pixels, chunks, strides, in_place, memory, optional, threads };
 
 struct Params {
   Offence offence = Offence::none;
@@ -15,6 +15,7 @@ struct Params {
     field("offence", offence,
           Choices{{"none", "keeps the rules"},
                   {"radius", "reads farther than it says"},
+                  {"array", "reads farther than it says, in an item of an array"},
                   {"pixels", "leaves a pixel unwritten"},
                   {"chunks", "depends on the bands"},
                   {"strides", "takes rows for dense"},
@@ -30,7 +31,8 @@ const PassInfo kInfo{.id = "offender",
                      .summary = "breaks a rule",
                      .source = "made up",
                      .inputs = {{.name = "color", .types = kColor, .doc = "copied"},
-                                {.name = "history", .types = kColor, .doc = "unread", .optional = true}},
+                                {.name = "history", .types = kColor, .doc = "unread", .optional = true},
+                                {.name = "extra", .types = kColor, .doc = "unread", .optional = true, .array = true}},
                      .outputs = {{.name = "color", .types = kColor, .doc = "nearly a copy"}}};
 
 class Offender final : public Pass {
@@ -42,6 +44,7 @@ class Offender final : public Pass {
   }
   void run(const Frame& frame) const override {
     const FloatImage color = frame.image("color");
+    const FloatImage read = offence_ == Offence::array && frame.has("extra") ? frame.image("extra") : color;
     const FloatOutput out = frame.output("color");
     if (offence_ == Offence::optional && !frame.has("history")) throw std::runtime_error("no history");
     const float last = last_.exchange(color.at(0, 0));
@@ -49,7 +52,7 @@ class Offender final : public Pass {
     frame.parallel_rows(out.height, [&](int y0, int y1) {
       for (int y = y0; y < y1; ++y)
         for (int c = 0; c < out.channels; ++c)
-          for (int x = 0; x < out.width; ++x) out.at(x, y, c) = value(color, x, y, c, y0);
+          for (int x = 0; x < out.width; ++x) out.at(x, y, c) = value(read, x, y, c, y0);
       if (offence_ == Offence::threads) order = order * 1.1F + static_cast<float>(y0);
     });
     if (offence_ == Offence::memory) out.at(0, 0) += last;
@@ -59,7 +62,7 @@ class Offender final : public Pass {
 
  private:
   float value(const FloatImage& color, int x, int y, int c, int first_row) const {
-    if (offence_ == Offence::radius && x > 0) return color.at(x - 1, y, c);
+    if ((offence_ == Offence::radius || offence_ == Offence::array) && x > 0) return color.at(x - 1, y, c);
     if (offence_ == Offence::in_place && x > 0) return color.at(x, y, c) + color.at(x - 1, y, c);
     if (offence_ == Offence::chunks) return color.at(x, first_row, c);
     if (offence_ == Offence::strides) return color.data[c * color.plane_stride + y * ((color.width + 15) / 16 + 1) * 16 + x];

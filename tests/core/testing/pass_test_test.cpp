@@ -68,6 +68,15 @@ TEST(PassTest, SaysWhatAUserWouldRead) {
   EXPECT_THAT([&] { pass.run(); }, ThrowsMessage<Error>(HasSubstr("gain")));
 }
 
+TEST(PassTest, SaysWhatAnOutputDoesNotCarry) {
+  PassTest pass("running_sum");
+  pass.input("color", ramp()).run();
+  EXPECT_THAT([&] { pass.output("frame"); }, ThrowsMessage<Error>("frame: the output carries no image of float planes"));
+  EXPECT_THAT([&] { pass.output_ids("color"); }, ThrowsMessage<Error>("color: the output carries no image of ids"));
+  EXPECT_THAT([&] { pass.output_values("color"); }, ThrowsMessage<Error>("color: the output carries no values"));
+  EXPECT_THAT([&] { pass.input("color", {}); }, ThrowsMessage<Error>(HasSubstr("there is nothing in the item")));
+}
+
 TEST(PassTest, LeavesInputsAlone) {
   PassTest pass("running_sum");
   const Image image = ramp();

@@ -26,7 +26,7 @@ const PassInfo kInfo{.id = "running_sum",
 class RunningSum final : public Pass {
  public:
   explicit RunningSum(const Params& params) : gain_(params.negate ? -params.gain : params.gain) {}
-  void infer(Inference& about) const override { about.set_in_place("color", "color"); }
+  void infer(Inference& about) const override { about.set_in_place("color", "color"), about.set_in_place("copies", "extra"); }
   void run(const Frame& frame) const override {
     const FloatImage color = frame.image("color"), history = frame.image("history");
     const FloatOutput out = frame.output("color");
@@ -43,7 +43,8 @@ class RunningSum final : public Pass {
  private:
   static void copy(const FloatImage& from, const FloatOutput& to) {
     for (int c = 0; c < to.channels; ++c)
-      for (int y = 0; y < to.height; ++y) std::copy_n(from.row(y, c), to.width, to.row(y, c));
+      for (int y = 0; y < to.height; ++y)
+        for (int x = 0; x < to.width; ++x) to.at(x, y, c) = from.at(x, y, c);  // std::copy_n must not be given one place twice
   }
   float gain_;
 };
