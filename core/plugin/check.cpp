@@ -8,6 +8,9 @@
 namespace quell {
 namespace {
 
+constexpr std::uint32_t kCameraBit = QUELL_TYPE_BIT(QUELL_TYPE_CAMERA);
+constexpr const char* kCameraOutput = "an output cannot be a camera: the interface has no place to write one";
+
 std::string fault_in_port(const quell_port_desc& port, const quell_pass_desc& pass, bool is_output) {
   if (!is_snake_case(port.name)) return "its name is not in snake_case";
   if (!port.doc) return "its doc is null";
@@ -21,13 +24,15 @@ std::string fault_in_port(const quell_port_desc& port, const quell_pass_desc& pa
   if (port.flags & QUELL_PORT_OPTIONAL) return "an output cannot be optional";
   if (port.same_as < -1 || port.same_as >= static_cast<std::int64_t>(pass.input_count)) return "its same_as names no input";
   if (port.same_as >= 0) {
-    const bool from_array = QUELL_AT(quell_port_desc, pass.inputs, port.same_as)->flags & QUELL_PORT_ARRAY;
+    const quell_port_desc& followed = *QUELL_AT(quell_port_desc, pass.inputs, port.same_as);
+    const bool from_array = followed.flags & QUELL_PORT_ARRAY;
     if (from_array != is_array) return "it and the input that same_as names must both be arrays, or neither";
-    return {};
+    return followed.types & kCameraBit ? kCameraOutput : "";
   }
   if (is_array) return "an output that is an array needs a same_as input";
   const bool is_one_type = port.types != 0 && (port.types & (port.types - 1)) == 0;
-  return is_one_type ? "" : "an output has exactly one type, or a same_as input";
+  if (!is_one_type) return "an output has exactly one type, or a same_as input";
+  return port.types == kCameraBit ? kCameraOutput : "";
 }
 
 std::string fault_in_ports(const quell_pass_desc& pass, const quell_port_desc* ports, std::uint32_t count, bool is_output) {

@@ -51,7 +51,8 @@ bool is_whole(const fs::path& file, const ElfW(Ehdr) & header) {
 }
 
 void require_shared_object(const fs::path& file) {
-  if (!fs::exists(file)) fail(file, "there is no such file");
+  std::error_code error;
+  if (!fs::exists(file, error)) fail(file, error ? "cannot be read: " + error.message() : "there is no such file");
   if (!fs::is_regular_file(file)) fail(file, "not an ELF shared object: this is not a regular file");
   if (!std::ifstream(file, std::ios::binary)) fail(file, "cannot be read: " + std::string(std::strerror(errno)));
   const ElfW(Ehdr) header = read_elf_header(file);

@@ -115,7 +115,7 @@ typedef struct quell_port_desc {
   uint32_t struct_size;
   uint32_t flags;    // QUELL_PORT_*
   const char* name;  // snake_case
-  uint32_t types;    // QUELL_TYPE_BIT of every type accepted; 0 for an output whose type is that of `same_as`
+  uint32_t types;    // QUELL_TYPE_BIT of every type accepted; 0 for an output whose type is that of `same_as`; outputs: no camera
   int32_t same_as;   // output: index of the input whose type (and, for arrays, count) it takes; -1 otherwise
   const char* doc;
 } quell_port_desc;

@@ -128,6 +128,7 @@ class Frame {
   }
   std::span<double> output_values(std::string_view name) const {
     const quell_item* it = item(out(name), 0);
+    if (!it || !it->values) throw std::logic_error("the pass writes values to an output that carries none");
     return {it->values->data, it->values->count};
   }
 

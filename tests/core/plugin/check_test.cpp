@@ -90,6 +90,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "pass 'valid': output 'color': an output has exactly one type, or a same_as input"},
         Spoiled{"OutputOfNoType", [](V& v) { v.outputs[0].same_as = -1; },
                 "pass 'valid': output 'color': an output has exactly one type, or a same_as input"},
+        Spoiled{"CameraOutput", [](V& v) { v.outputs[0].same_as = -1, v.outputs[0].types = QUELL_TYPE_BIT(QUELL_TYPE_CAMERA); },
+                "pass 'valid': output 'color': an output cannot be a camera: the interface has no place to write one"},
+        Spoiled{"SameAsCamera", [](V& v) { v.inputs[0].types |= QUELL_TYPE_BIT(QUELL_TYPE_CAMERA); },
+                "pass 'valid': output 'color': an output cannot be a camera: the interface has no place to write one"},
         Spoiled{"OptionalOutput", [](V& v) { v.outputs[0].flags = QUELL_PORT_OPTIONAL; },
                 "pass 'valid': output 'color': an output cannot be optional"}),
     kTestName);

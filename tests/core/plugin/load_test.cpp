@@ -64,6 +64,10 @@ TEST(LoadPlugin, RefusesWhatIsNoElfFile) {
   EXPECT_EQ(load_report(folder / "absent.so").error, "there is no such file");
 }
 
+TEST(LoadPlugin, ReportsANameThatTheSystemRefuses) {
+  EXPECT_EQ(load_report(std::string(300, 'x') + ".so").error, "cannot be read: File name too long");
+}
+
 TEST(LoadPlugin, RefusesAnElfFileOfAnotherMachineOrKind) {
   const TempFolder folder;
   std::string bytes = read_all(test_plugin("raw"));

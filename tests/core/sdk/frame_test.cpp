@@ -82,6 +82,8 @@ TEST_F(FrameOfEverything, WritesToItsOutputs) {
   EXPECT_EQ(stats_numbers[2], 8);
 }
 
+TEST_F(FrameOfEverything, RefusesToWriteValuesToAnImage) { EXPECT_THROW(frame.output_values("color"), std::logic_error); }
+
 TEST_F(FrameOfEverything, CountsTheItemsOfAnArrayAndSaysWhichAreThere) {
   EXPECT_EQ(frame.count("extra"), 2u);
   EXPECT_TRUE(frame.has("extra", 0));
