@@ -70,7 +70,7 @@ ExitCode compute(Job& job, const Arguments& arguments, int threads, FileSink& si
   options.threads = threads;
   options.dumps = arguments.dumps;
   options.log = log_of_pass;
-  options.cancelled = Interrupt::requested;
+  options.cancelled = interrupted;
   Session* running = nullptr;
   Progress progress(console, job.frames.size());
   options.on_frame = [&](const FrameReport& report) {
@@ -91,7 +91,7 @@ ExitCode compute(Job& job, const Arguments& arguments, int threads, FileSink& si
 }
 
 ExitCode run(const Arguments& arguments, Console& console) {
-  const Interrupt interrupt;
+  handle_interrupts();
   set_verbosity(arguments.verbosity.verbosity());
   const int threads = parse_count(arguments.threads, "--threads", 0, kMostThreads);
   FileSinkOptions output = parse_output(arguments);

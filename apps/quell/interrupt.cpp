@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <string_view>
 
 #include "exit_code.h"
@@ -26,21 +27,15 @@ void handle(int) {
 
 }  // namespace
 
-Interrupt::Interrupt() {
+void handle_interrupts() {
   notice_start = isatty(STDERR_FILENO) == 1 ? 0 : 1;
   struct sigaction action {};
   action.sa_handler = handle;
   action.sa_flags = SA_RESTART;  // reading and writing files goes on
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, &former_int_);
-  sigaction(SIGTERM, &action, &former_term_);
+  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
 }
 
-Interrupt::~Interrupt() {
-  sigaction(SIGINT, &former_int_, nullptr);
-  sigaction(SIGTERM, &former_term_, nullptr);
-}
-
-bool Interrupt::requested() { return signals.load() > 0; }
+bool interrupted() { return signals.load() > 0; }
 
 }  // namespace quell::app

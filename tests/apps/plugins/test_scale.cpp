@@ -70,6 +70,7 @@ class TestScale final : public Pass {
  private:
   // The limit is for a host that never cancels: the test then fails instead of hanging.
   static void wait(const Frame& frame, bool stubborn) {
+    frame.log(QUELL_LOG_INFO, "waiting");
     for (int i = 0; i < 3000 && (stubborn || !frame.cancelled()); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   Params params_;
