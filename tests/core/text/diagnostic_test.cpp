@@ -94,7 +94,8 @@ TEST(Diagnostics, TellTheSameOnceAndDifferentThingsOfOnePlaceInTheirOrder) {
 TEST(Diagnostics, AddNotes) {
   const SourceTextPtr a = source("abc", "a.json"), b = source("x\nyz", "b.json");
   Diagnostics errors;
-  errors.error({a, 0}, "wrong", {{{b, 3}, "included from here"}, {{}, "no place"}});
+  const std::vector<Note> notes{{{b, 3}, "included from here"}, {{}, "no place"}};
+  errors.error({a, 0}, "wrong", notes);
   EXPECT_EQ(errors.render(), "a.json:1:1: error: wrong\n    abc\n    ^\nb.json:2:2: note: included from here\nnote: no place");
 }
 
