@@ -9,6 +9,10 @@ namespace {
 
 // All ones in the exponent: NaN or infinity. Bits are compared so that no compiler option can remove the test.
 bool is_finite(float value) { return (std::bit_cast<std::uint32_t>(value) & 0x7f800000u) != 0x7f800000u; }
+bool is_finite(double value) {
+  constexpr std::uint64_t kExponent = 0x7ff0000000000000u;
+  return (std::bit_cast<std::uint64_t>(value) & kExponent) != kExponent;
+}
 
 std::int64_t count_non_finite(const FloatImage& image, Executor& executor) {
   std::atomic<std::int64_t> total{0};
@@ -23,9 +27,19 @@ std::int64_t count_non_finite(const FloatImage& image, Executor& executor) {
   return total;
 }
 
+std::int64_t sanitize_values(Item& item) {
+  Values clean = *item.values();
+  const auto is_bad = [](double value) { return !is_finite(value); };
+  const std::int64_t count = std::ranges::count_if(clean, is_bad);
+  std::ranges::replace_if(clean, is_bad, 0.0);
+  if (count > 0) item = std::move(clean);
+  return count;
+}
+
 }  // namespace
 
 std::int64_t sanitize(Item& item, Executor& executor, BufferPool& pool) {
+  if (item.values()) return sanitize_values(item);
   const Image* image = item.image();
   if (!image || info(image->type()).format != QUELL_FORMAT_F32) return 0;
   const std::int64_t count = count_non_finite(image->floats(), executor);

@@ -1,4 +1,4 @@
-// NaN and infinity are taken out of images once, where they enter a graph, so that no pass ever meets them.
+// NaN and infinity are taken out of images and values once, where they enter a graph, so that no pass ever meets them.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 namespace quell {
 
 /// Replaces every value that is NaN or infinite: by 0, in depth by the distance of "no surface". Pixels that somebody else holds
-/// are copied first. Returns how many values were replaced; other items are left alone.
+/// are copied first. Returns how many values were replaced; cameras and ids are left alone.
 std::int64_t sanitize(Item& item, Executor& executor, BufferPool& pool);
 
 }  // namespace quell

@@ -58,6 +58,12 @@ TEST_F(Sanitize, TakesADepthThatIsNotFiniteForNoSurface) {
   EXPECT_EQ(item.image()->floats().at(1, 0), 3.0F);
 }
 
+TEST_F(Sanitize, ReplacesNumbersThatAreNotFinite) {
+  Item item = Values{1e300, static_cast<double>(kNan), -2, static_cast<double>(kInfinity)};
+  EXPECT_EQ(sanitize(item, *executor, pool), 2);
+  EXPECT_EQ(*item.values(), (Values{1e300, 0, -2, 0}));
+}
+
 TEST_F(Sanitize, LeavesFiniteImagesAndEverythingElseAlone) {
   Image image = flat_color({4, 4}, 1.0F, pool);
   const void* pixels = image.buffer().data();
