@@ -94,7 +94,9 @@ TEST(Diagnostics, TellTheSameOnceAndDifferentThingsOfOnePlaceInTheirOrder) {
 TEST(Diagnostics, AddNotes) {
   const SourceTextPtr a = source("abc", "a.json"), b = source("x\nyz", "b.json");
   Diagnostics errors;
-  const std::vector<Note> notes{{{b, 3}, "included from here"}, {{}, "no place"}};
+  std::vector<Note> notes(2);
+  notes[0].where = {b, 3}, notes[0].message = "included from here";
+  notes[1].message = "no place";
   errors.error({a, 0}, "wrong", notes);
   EXPECT_EQ(errors.render(), "a.json:1:1: error: wrong\n    abc\n    ^\nb.json:2:2: note: included from here\nnote: no place");
 }
