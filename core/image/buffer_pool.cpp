@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstring>
 #include <new>
+#include <optional>
 #include <utility>
 
 namespace quell {
@@ -16,7 +17,7 @@ struct BufferPool::State {
   std::mutex mutex;
   std::map<std::size_t, std::vector<Buffer::Block*>> idle;
   Usage usage;
-  bool poison = false;
+  std::optional<unsigned char> fill;  // what blocks hold when they are handed out; nothing: whatever they held
   bool open = true;  // false once the pool is gone: nothing is kept any more
 
   void take_back(Buffer::Block* block);
@@ -103,7 +104,7 @@ Buffer BufferPool::acquire(std::size_t bytes) {
     usage.peak = std::max(usage.peak, usage.in_use + usage.idle);
   }
   block->state = state_;
-  if (state_->poison) std::memset(block->data, 0xff, bytes);  // all bits set is a NaN
+  if (state_->fill) std::memset(block->data, *state_->fill, bytes);
   return Buffer(block);
 }
 
@@ -112,7 +113,7 @@ BufferPool::Usage BufferPool::usage() const {
   return state_->usage;
 }
 
-void BufferPool::poison(bool on) { state_->poison = on; }
+void BufferPool::fill(unsigned char byte) { state_->fill = byte; }
 
 void BufferPool::trim() {
   const std::scoped_lock lock(state_->mutex);

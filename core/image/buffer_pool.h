@@ -54,8 +54,9 @@ class BufferPool {
   Usage usage() const;
   /// Gives idle blocks back to the system.
   void trim();
-  /// Fills every block that is handed out with NaN, so that a test sees when unspecified content is used.
-  void poison(bool on);
+  /// From now on every block is filled with `byte` before it is handed out, so that a test sees when unspecified content is used:
+  /// 0xff makes floats NaN.
+  void fill(unsigned char byte);
 
  private:
   friend class Buffer;

@@ -16,7 +16,8 @@ using Violations = std::vector<std::string>;
 
 /// The descriptor is whole: checked as at loading, and every part is documented.
 Violations check_description(const MakePass& make);
-/// Runs on 1x1, 1xN, Nx1 and odd sizes, writes every pixel of every output, and makes no NaN from finite inputs.
+/// Runs on 1x1, 1xN, Nx1 and odd sizes, writes every pixel of every output whatever memory held before, and makes no NaN from
+/// finite inputs.
 Violations check_sizes(const MakePass& make);
 /// A changed pixel of an input changes nothing outside the radius that the pass declares.
 Violations check_radius(const MakePass& make);

@@ -52,7 +52,7 @@ struct PassTest::State {
   explicit State(const quell_pass_desc& pass) : graph{pass} {
     const quell_pass_desc* passes[] = {&pass};
     registry.add(passes, 1);
-    pool.poison(true);
+    pool.fill(kNanByte);
   }
 
   std::string shape_text() const {
@@ -138,6 +138,10 @@ PassTest& PassTest::threads(int count) {
 }
 PassTest& PassTest::grain(int rows) {
   state_->services.force_grain = rows;
+  return *this;
+}
+PassTest& PassTest::fresh_memory(unsigned char byte) {
+  state_->pool.fill(byte);
   return *this;
 }
 PassTest& PassTest::in_place() {

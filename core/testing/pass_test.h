@@ -76,6 +76,9 @@ class PassTest {
   PassTest& threads(int count);
   /// Rows of every chunk, whatever the pass asks for; 0 as the pass asks.
   PassTest& grain(int rows);
+  /// What every byte of outputs and scratch holds before the pass runs; at first kNanByte, so that what is not written shows.
+  PassTest& fresh_memory(unsigned char byte);
+  static constexpr unsigned char kNanByte = 0xff;
   /// Lets outputs take over the memory of inputs, where the pass allows it. Inputs then have to be given anew for each frame.
   PassTest& in_place();
 

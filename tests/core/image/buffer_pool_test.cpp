@@ -98,9 +98,9 @@ TEST(Buffer, MayBeCopiedAndDroppedOnAnyThread) {
   EXPECT_LE(pool.usage().allocated, 5U);
 }
 
-TEST(BufferPool, FillsBlocksWithNanWhenPoisoned) {
+TEST(BufferPool, FillsBlocksWithNanWhenAsked) {
   BufferPool pool;
-  pool.poison(true);
+  pool.fill(0xff);
   const Buffer a = pool.acquire(64);
   EXPECT_TRUE(std::isnan(static_cast<const float*>(a.data())[15]));
 }

@@ -1,6 +1,5 @@
 // Passes that break one rule each, to see that the conformance checks notice. `offence` chooses the rule.
 #include <atomic>
-#include <limits>
 
 #include "quell/sdk/pass.h"
 
@@ -52,15 +51,17 @@ class Offender final : public Pass {
     frame.parallel_rows(out.height, [&](int y0, int y1) {
       for (int y = y0; y < y1; ++y)
         for (int c = 0; c < out.channels; ++c)
-          for (int x = 0; x < out.width; ++x) out.at(x, y, c) = value(read, x, y, c, y0);
+          for (int x = 0; x < written_width(out, y, c); ++x) out.at(x, y, c) = value(read, x, y, c, y0);
       if (offence_ == Offence::threads) order = order * 1.1F + static_cast<float>(y0);
     });
     if (offence_ == Offence::memory) out.at(0, 0) += last;
     if (offence_ == Offence::threads) out.at(0, 0) = order;
-    if (offence_ == Offence::pixels) out.at(out.width - 1, out.height - 1, 2) = std::numeric_limits<float>::quiet_NaN();
   }
 
  private:
+  int written_width(const FloatOutput& out, int y, int c) const {
+    return offence_ == Offence::pixels && y == out.height - 1 && c == 2 ? out.width - 1 : out.width;
+  }
   float value(const FloatImage& color, int x, int y, int c, int first_row) const {
     if ((offence_ == Offence::radius || offence_ == Offence::array) && x > 0) return color.at(x - 1, y, c);
     if (offence_ == Offence::in_place && x > 0) return color.at(x, y, c) + color.at(x - 1, y, c);
@@ -82,6 +83,22 @@ class Undocumented final : public Pass {
   explicit Undocumented(const NoParams&) {}
   void run(const Frame&) const override {}
 };
+const PassInfo kForgetful{.id = "forgetful",
+                          .summary = "leaves an id unwritten",
+                          .source = "made up",
+                          .inputs = {{.name = "id", .types = kId, .doc = "copied"}},
+                          .outputs = {{.name = "id", .types = kId, .doc = "a copy but for the last pixel"}}};
+class Forgetful final : public Pass {
+ public:
+  explicit Forgetful(const NoParams&) {}
+  void run(const Frame& frame) const override {
+    const IdImage ids = frame.ids("id");
+    const IdOutput out = frame.output_ids("id");
+    for (int i = 0; i + 1 < out.width * out.height; ++i)
+      out.at(i % out.width, i / out.width) = ids.at(i % out.width, i / out.width);
+  }
+};
+const bool forgetful_is_registered = detail::register_pass<Forgetful, NoParams>(kForgetful);
 const bool undocumented_is_registered = detail::register_pass<Undocumented, NoParams>(kUndocumented);
 
 }  // namespace
