@@ -18,7 +18,7 @@ struct BufferPool::State {
   std::map<std::size_t, std::vector<Buffer::Block*>> idle;
   Usage usage;
   std::optional<unsigned char> fill;  // what blocks hold when they are handed out; nothing: whatever they held
-  bool open = true;  // false once the pool is gone: nothing is kept any more
+  bool open = true;                   // false once the pool is gone: nothing is kept any more
 
   void take_back(Buffer::Block* block);
   void free_idle();
@@ -82,6 +82,15 @@ BufferPool::~BufferPool() {
   state_->free_idle();
 }
 
+Buffer::Block* BufferPool::new_block(std::size_t bytes) {
+  try {
+    return new Buffer::Block(bytes);
+  } catch (const std::bad_alloc&) {
+    trim();  // blocks of other sizes that nobody holds may make room
+    return new Buffer::Block(bytes);
+  }
+}
+
 Buffer BufferPool::acquire(std::size_t bytes) {
   Buffer::Block* block = nullptr;
   {
@@ -96,7 +105,7 @@ Buffer BufferPool::acquire(std::size_t bytes) {
     }
   }
   if (!block) {
-    block = new Buffer::Block(bytes);
+    block = new_block(bytes);
     const std::scoped_lock lock(state_->mutex);
     Usage& usage = state_->usage;
     usage.in_use += bytes;

@@ -49,7 +49,8 @@ class BufferPool {
   BufferPool(const BufferPool&) = delete;
   BufferPool& operator=(const BufferPool&) = delete;
 
-  /// At least `bytes` bytes, 64-byte aligned, content unspecified. Throws std::bad_alloc.
+  /// At least `bytes` bytes, 64-byte aligned, content unspecified. Throws std::bad_alloc when there is no room even without the
+  /// idle blocks.
   Buffer acquire(std::size_t bytes);
   Usage usage() const;
   /// Gives idle blocks back to the system.
@@ -61,6 +62,7 @@ class BufferPool {
  private:
   friend class Buffer;
   struct State;
+  Buffer::Block* new_block(std::size_t bytes);
   std::shared_ptr<State> state_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <utility>
 
 #include "quell/runtime/frame_run.h"
@@ -97,7 +98,10 @@ std::vector<FrameReport> Session::run(const std::vector<std::int64_t>& frames, F
     const auto start = std::chrono::steady_clock::now();
     try {
       s.run_frame(report, reader, offered, sink);
-    } catch (const Cancelled&) { break; } catch (const std::exception& error) {
+    } catch (const Cancelled&) { break; } catch (const std::bad_alloc&) {
+      report.ok = false;
+      report.error = "out of memory, with " + std::to_string(s.pool.usage().in_use >> 20) + " MiB of images held";
+    } catch (const std::exception& error) {
       report.ok = false;
       report.error = error.what();
     }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <new>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -57,6 +58,15 @@ TEST(BufferPool, GivesIdleBlocksBackWhenTrimmed) {
   pool.trim();
   EXPECT_EQ(pool.usage().idle, 0U);
 }
+
+#ifndef __SANITIZE_ADDRESS__  // which takes a request that large for a mistake of the program
+TEST(BufferPool, GivesIdleBlocksBackBeforeItGivesUp) {
+  BufferPool pool;
+  pool.acquire(100);
+  EXPECT_THROW(pool.acquire(std::size_t{1} << 60), std::bad_alloc);
+  EXPECT_EQ(pool.usage().idle, 0U);
+}
+#endif
 
 TEST(Buffer, IsUniqueUntilSomebodyElseHoldsIt) {
   BufferPool pool;

@@ -47,6 +47,18 @@ TEST(SessionFailure, ToReadFailsItsFrameAlone) {
   EXPECT_EQ(sink.pixel("color", 3), 3.0F);
 }
 
+TEST(SessionFailure, ForLackOfMemoryIsToldInWords) {
+  MemorySource source;
+  source.paint = [](Image&, std::int64_t frame) {
+    if (frame == 2) throw std::bad_alloc();
+  };
+  MemorySink sink;
+  Session session(test_graph(kSumGraph));
+  const auto reports = session.run({1, 2, 3}, source, sink);
+  EXPECT_TRUE(reports[0].ok && !reports[1].ok && reports[2].ok);
+  EXPECT_THAT(reports[1].error, HasSubstr("out of memory, with 0 MiB of images held"));
+}
+
 TEST(SessionFailure, ToWriteLeavesHistoryIntact) {
   MemorySource source;
   MemorySink sink;
