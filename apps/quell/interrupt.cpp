@@ -34,6 +34,7 @@ void handle_interrupts() {
   action.sa_flags = SA_RESTART;  // reading and writing files goes on
   sigemptyset(&action.sa_mask);
   for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond `ulimit -f` is a failed frame, as on a full disk
 }
 
 bool interrupted() { return signals.load() > 0; }

@@ -1,9 +1,13 @@
 #include "quell/sequence/image_writer.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 
 #include "quell/sequence/oiio.h"
 #include "quell/text/error.h"
@@ -14,18 +18,59 @@ namespace {
 constexpr float kLargestHalf = 65504.0F;
 constexpr int kBand = 64;  // rows handed over at a time, so that the interleaved copy stays small
 
+/// A file that OpenImageIO writes to, and that knows whether all of it arrived: OpenImageIO itself does not look when its PNG
+/// writer writes, nor at what a file still holds when it is closed, so that on a full disk half a picture would pass for whole.
+class CheckedFile final : public OIIO::Filesystem::IOFile {
+ public:
+  explicit CheckedFile(const std::filesystem::path& file) : IOFile(std::fopen(file.c_str(), "wb"), Write) {
+    note(m_file != nullptr);
+  }
+  ~CheckedFile() override { finish(); }
+
+  std::size_t write(const void* data, std::size_t size) override {
+    const std::size_t written = IOFile::write(data, size);
+    note(written == size);
+    return written;
+  }
+  bool seek(std::int64_t offset) override {  // writes what was held back
+    const bool ok = IOFile::seek(offset);
+    note(ok);
+    return ok;
+  }
+  void close() override {}  // finish() does, and looks
+
+  /// Writes what is left and closes the file.
+  void finish() {
+    if (m_file) note(std::fclose(m_file) == 0);
+    m_file = nullptr;
+  }
+  /// The errno of the first failure; 0 for none.
+  int error() const { return error_; }
+
+ private:
+  void note(bool ok) {
+    if (!ok && error_ == 0) error_ = errno;
+  }
+  int error_ = 0;
+};
+
 /// Opens the file with OpenImageIO's writer of a format, has rows written in bands, and closes it.
 /// fill(y, out) interleaves row y.
 template <class Value, class Fill>
-void write_rows(const char* format, const std::filesystem::path& file, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+void write_rows(const char* format, const std::filesystem::path& file, OIIO::ImageSpec spec, OIIO::TypeDesc type,
                 const Fill& fill) {
   prepare_oiio();
+  CheckedFile checked(file);
   const auto output = OIIO::ImageOutput::create(format);
   if (!output)
     throw Error(Fault::frame, file.string(), "OpenImageIO cannot write " + std::string(format) + ": " + OIIO::geterror());
   const auto check = [&](bool ok) {
-    if (!ok) throw Error(Fault::frame, file.string(), "cannot be written: " + one_line(output->geterror()));
+    if (ok && checked.error() == 0) return;
+    const std::string why = one_line(output->geterror());  // asked for in any case: what is not asked for is printed
+    throw Error(Fault::frame, file.string(), "cannot be written: " + (checked.error() ? std::strerror(checked.error()) : why));
   };
+  OIIO::Filesystem::IOProxy* const proxy = &checked;  // as an attribute, for the EXR writer forgets set_ioproxy()
+  spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   check(output->open(file.string(), spec));
   const std::size_t row = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels);
   std::vector<Value> band(row * static_cast<std::size_t>(std::min(kBand, spec.height)));
@@ -35,6 +80,8 @@ void write_rows(const char* format, const std::filesystem::path& file, const OII
     check(output->write_scanlines(begin, end, 0, type, band.data()));
   }
   check(output->close());
+  checked.finish();
+  check(true);
 }
 
 /// Clamps to the range of half; false when nothing was to be clamped. NaN stays.

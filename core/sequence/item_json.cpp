@@ -1,4 +1,6 @@
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -58,7 +60,7 @@ void write_text(const std::string& text, const std::filesystem::path& file) {
   std::ofstream stream(file, std::ios::binary);
   stream << text;
   stream.close();
-  if (!stream) throw Error(Fault::frame, file.string(), "cannot be written");
+  if (!stream) throw Error(Fault::frame, file.string(), std::string("cannot be written: ") + std::strerror(errno));
 }
 
 }  // namespace quell

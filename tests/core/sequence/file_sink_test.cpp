@@ -1,9 +1,11 @@
 #include "quell/sequence/file_sink.h"
 
 #include <OpenImageIO/imageio.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <limits>
 
@@ -234,6 +236,41 @@ TEST_F(FileSinkTo, AFailedWriteLeavesNothing) {
                            FileSink({.folder = folder_ / "file"}).write("color", 1, image(QUELL_TYPE_COLOR, {1, 2, 3}));
                          }),
               HasSubstr("file: the folder cannot be made: "));
+}
+
+/// As on a full disk: files of this process cannot grow beyond so many bytes.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : former_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &former_);
+    rlimit limit = former_;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &former_);
+    std::signal(SIGXFSZ, former_handler_);
+  }
+
+ private:
+  void (*former_handler_)(int);
+  rlimit former_{};
+};
+
+TEST_F(FileSinkTo, AFileThatDoesNotArriveWholeIsAFailedWrite) {
+  FileSinkOptions png = options();
+  png.formats = {FileFormat::png};
+  const auto message = [&](const FileSinkOptions& chosen, const char* output, const Item& item) {
+    return message_of(Fault::frame, [&] { FileSink(chosen).write(output, 1, item); });
+  };
+  const std::string out = (folder_ / "out").string();
+  const Item color = image(QUELL_TYPE_COLOR, {1, 2, 3});
+  // 20 bytes are less than any of the files, and than a stream's buffer: some failures show only when the file is closed.
+  const FileSizeLimit limit(20);
+  EXPECT_EQ(message(options(), "color", color), out + "/color.0001.exr: cannot be written: File too large");
+  EXPECT_EQ(message(png, "color", color), out + "/color.0001.png: cannot be written: File too large");
+  EXPECT_EQ(message(options(), "exposure", Values{0.5}), out + "/exposure.0001.json: cannot be written: File too large");
+  EXPECT_THAT(names(), IsEmpty());
 }
 
 TEST_F(FileSinkTo, NothingIsTouchedBeforeTheFirstWrite) {
