@@ -47,7 +47,7 @@ void add_options(CLI::App& app, GraphArguments& arguments) {
 
 void add_options(CLI::App& app, SequenceArguments& arguments) {
   app.add_option("SEQUENCE", arguments.sequence,
-                 "A folder of images, which is recognised by its file names, or a sequence.json. May be left out when --in "
+                 "A folder of images, which is recognized by its file names, or a sequence.json. May be left out when --in "
                  "names every input.");
   add_repeatable(
       app, "--in", arguments.in, "INPUT=PATTERN",
@@ -55,7 +55,8 @@ void add_options(CLI::App& app, SequenceArguments& arguments) {
       "may follow: id=ID_%d.exr:background=-1, also :type=, :channels=R,G,B and :format=.")
       ->group(kInputGroup);
   add_text(app, "--frames", arguments.frames, "RANGE",
-           "Frames to compute: 1-100, 1-100x2 (every second), 1,5,9-12. Without it, all for which every input exists.")
+           "Frames to compute: 1-100, 1-100x2 (every second), 1,5,9-12. Without it, those of the sequence.json, or all for "
+           "which every input exists.")
       ->group(kInputGroup);
 }
 

@@ -34,6 +34,7 @@ struct Arguments {
 /// Throws Error(usage) for what cannot be. Without --padding the digits are still to be taken from the sequence.
 FileSinkOptions parse_output(const Arguments& arguments) {
   FileSinkOptions options;
+  if (arguments.out.empty()) throw Error(Fault::usage, "--out", "the name is empty; name a folder for the results");
   options.folder = arguments.out;
   options.type = parse_pixel_type(arguments.type);
   options.compression = arguments.compression;

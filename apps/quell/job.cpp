@@ -90,7 +90,10 @@ std::string list_missing(const std::vector<MissingFile>& missing) {
   std::string text;
   for (std::size_t i = 0; i < std::min(missing.size(), kMostListed); ++i)
     text += "\n  frame " + std::to_string(missing[i].frame) + ", " + missing[i].input + ": " + missing[i].file.string();
-  if (missing.size() > kMostListed) text += "\n  and " + std::to_string(missing.size() - kMostListed) + " more";
+  if (missing.size() >= Sequence::kMostMissing)
+    text += "\n  and many more";
+  else if (missing.size() > kMostListed)
+    text += "\n  and " + std::to_string(missing.size() - kMostListed) + " more";
   return text;
 }
 

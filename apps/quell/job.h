@@ -25,7 +25,7 @@ struct Job {
 /// Loads the plugins and the graph. Throws Error(plugin) or Error(usage).
 std::shared_ptr<const Graph> load(const GraphArguments& arguments);
 
-/// Opens the sequence for the graph, tells what was recognised, and plans. Throws Error(input) when an input, or a file of the
+/// Opens the sequence for the graph, tells what was recognized, and plans. Throws Error(input) when an input, or a file of the
 /// frames asked for, is missing; Error(usage) when the graph cannot run on these images.
 Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arguments,
                 const std::vector<std::string>& dumps = {});

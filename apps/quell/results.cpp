@@ -58,17 +58,17 @@ std::vector<ResultFiles> list_results(const Job& job, const FileSink& sink, cons
 }
 
 void refuse_to_replace_inputs(const Job& job, const std::vector<ResultFiles>& results) {
-  for (const InputFiles& input : job.inputs) {
+  for (const InputFiles& input : job.sequence->inputs()) {  // also what the graph does not read: rendering it took long
     const fs::path folder = fs::path(input.pattern).parent_path();
     const std::set<fs::path> names = files_of(input, job.frames);
     for (const ResultFiles& series : results) {
       std::error_code error;
       if (!fs::equivalent(folder.empty() ? "." : folder, series.files.front().parent_path(), error)) continue;
       for (const fs::path& file : series.files)
-        if (names.contains(file.filename()))
-          throw Error(
-              Fault::usage, "--out",
-              "the results would replace " + file.string() + ", which is read as '" + input.input + "'; choose another folder");
+        if (names.contains(file.filename()) && fs::exists(file, error))
+          throw Error(Fault::usage, "--out",
+                      "the results would replace " + file.string() + ", which is '" + input.input +
+                          "' of the sequence; choose another folder");
     }
   }
 }

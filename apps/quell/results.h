@@ -20,7 +20,7 @@ struct ResultFiles {
 /// Every file that the run of a job writes. Throws Error(usage) when no chosen format can hold an image.
 std::vector<ResultFiles> list_results(const Job& job, const FileSink& sink, const FileSinkOptions& options);
 
-/// Throws Error(usage) when a result would replace one of the files that the run reads.
+/// Throws Error(usage) when a result would replace a file of the sequence, be it read or not.
 void refuse_to_replace_inputs(const Job& job, const std::vector<ResultFiles>& results);
 
 /// Makes the folder. Throws Error(usage) when that fails, or when nothing can be written there.

@@ -88,8 +88,9 @@ std::vector<MissingFile> Sequence::missing(const std::vector<std::string>& requi
   for (const std::int64_t frame : all.frames()) {
     for (const std::string& name : required) {
       const SequenceInput& input = state_->require(name);
-      if (!std::binary_search(input.frames.begin(), input.frames.end(), frame))
-        result.push_back({name, frame, input.spec.pattern.path(frame)});
+      if (std::binary_search(input.frames.begin(), input.frames.end(), frame)) continue;
+      if (state_->asked && result.size() == kMostMissing) return result;
+      result.push_back({name, frame, input.spec.pattern.path(frame)});
     }
   }
   return result;

@@ -55,8 +55,10 @@ class Sequence final : public FrameSource {
   /// for which every input has a file. Ascending. Throws Error(input) when the sequence lacks one of the inputs.
   std::vector<std::int64_t> frames(const std::vector<std::string>& required) const;
   /// The files that are missing among the frames asked for, or, when none were asked for, among all frames that any of the
-  /// required inputs has. By frame, then by input.
+  /// required inputs has. By frame, then by input. Of frames asked for, no more than the first kMostMissing files are told: with
+  /// a digit too many there may be millions.
   std::vector<MissingFile> missing(const std::vector<std::string>& required) const;
+  static constexpr std::size_t kMostMissing = 10'000;
   /// Every input, by name.
   std::vector<InputFiles> inputs() const;
   /// Digits of the frame numbers in file names (of `color` when there is one), for files to be written; 4 when they are not

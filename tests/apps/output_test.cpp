@@ -72,8 +72,29 @@ TEST_F(Output, NeverReplacesWhatIsRead) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.err.substr(outcome.err.find("error")),
             "error: --out: the results would replace " + text("shot") +
-                "/../shot/color.0001.exr, which is read as 'color'; choose another folder\n");
+                "/../shot/color.0001.exr, which is 'color' of the sequence; choose another folder\n");
   EXPECT_EQ(contents("shot"), before);
+}
+
+TEST_F(Output, NeverReplacesWhatOtherGraphsRead) {
+  make_shot(1);
+  write_file("to_reference.json", R"({
+  "quell": 1, "inputs": { "color": "color" },
+  "nodes": { "scale": { "pass": "test_scale", "in": { "color": "color" } } },
+  "outputs": { "reference": "scale.color" } })");
+  std::filesystem::copy(path("shot/color.0001.exr"), path("shot/reference.0001.exr"));
+  const auto before = contents("shot");
+  const Outcome outcome = run({"run", text("to_reference.json"), text("shot"), "-o", text("shot")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("reference.0001.exr, which is 'reference' of the sequence; choose another folder\n"));
+  EXPECT_EQ(contents("shot"), before);
+}
+
+TEST_F(Output, NeedsAFolderWithAName) {
+  make_shot(1);
+  const Outcome outcome = run({"run", make_graph(), text("shot"), "-o", "", "--dry-run"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, "error: --out: the name is empty; name a folder for the results\n");
 }
 
 TEST_F(Output, MayLieBesideWhatIsReadUnderOtherNames) {

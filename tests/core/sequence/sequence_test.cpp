@@ -87,6 +87,14 @@ TEST_F(SequenceOf, AFrameMissingInTheMiddleIsNamed) {
   EXPECT_THAT(open({}, "1,3")->missing({"color", "depth"}), IsEmpty());
 }
 
+TEST_F(SequenceOf, OfMillionsOfMissingFramesTheFirstAreTold) {
+  make_color("color.0001.exr");
+  const auto missing = open({}, "0-9999999")->missing({"color"});
+  ASSERT_EQ(missing.size(), Sequence::kMostMissing);
+  EXPECT_EQ(missing[0].frame, 0);
+  EXPECT_EQ(missing[1].frame, 2);
+}
+
 TEST_F(SequenceOf, AnInputThatIsNotThereIsToldWithWhatIs) {
   make_color("color.0001.exr");
   const auto sequence = open({"depth=" + path("z_%d.exr")});
