@@ -1,7 +1,6 @@
 #include "run_summary.h"
 
 #include <algorithm>
-#include <charconv>
 #include <numeric>
 
 #include "console.h"
@@ -11,23 +10,6 @@ namespace quell::app {
 namespace {
 
 constexpr std::size_t kMostFailuresListed = 20;
-
-/// "color: 3 values were bad" as "color: ", 3, " values were bad"; the whole as `before` when it is not of that form.
-struct CountedText {
-  std::string before, after;
-  std::int64_t count = 0;
-  bool has_count = false;
-};
-
-CountedText take_apart(const std::string& text) {
-  const std::size_t colon = text.find(": ");
-  if (colon == std::string::npos) return {text, "", 0, false};
-  const char* digits = text.data() + colon + 2;
-  std::int64_t count = 0;
-  const auto [end, error] = std::from_chars(digits, text.data() + text.size(), count);
-  if (error != std::errc() || end == text.data() + text.size() || *end != ' ') return {text, "", 0, false};
-  return {text.substr(0, colon + 2), end, count, true};
-}
 
 std::string frames_text(const std::vector<std::int64_t>& frames) {
   return (frames.size() == 1 ? "frame " : "frames ") + FrameRange(frames).text();
@@ -47,30 +29,25 @@ void tell_failures(const std::vector<FrameReport>& reports) {
 
 }  // namespace
 
-std::vector<std::string> sum_up_warnings(const std::vector<FrameReport>& reports) {
+std::vector<std::string> sum_up_replaced(const std::vector<FrameReport>& reports) {
   struct Sum {
-    std::int64_t count = 0;
-    bool has_count = false;
+    ReplacedValues values;
     std::vector<std::int64_t> frames;
   };
-  std::map<std::pair<std::string, std::string>, Sum> sums;
+  std::map<std::string, Sum> sums;  // by input
   for (const FrameReport& report : reports)
-    for (const std::string& warning : report.warnings) {
-      const CountedText parts = take_apart(warning);
-      Sum& sum = sums[{parts.before, parts.after}];
-      sum.count += parts.count;
-      sum.has_count = parts.has_count;
+    for (const ReplacedValues& replaced : report.replaced) {
+      Sum& sum = sums.try_emplace(replaced.input, Sum{{replaced.input, replaced.type, 0}, {}}).first->second;
+      sum.values.count += replaced.count;
       sum.frames.push_back(report.frame);
     }
   std::vector<std::string> lines;
-  for (const auto& [text, sum] : sums)
-    lines.push_back(text.first + (sum.has_count ? std::to_string(sum.count) : "") + text.second + " (" + frames_text(sum.frames) +
-                    ")");
+  for (const auto& [input, sum] : sums) lines.push_back(describe(sum.values) + " (" + frames_text(sum.frames) + ")");
   return lines;
 }
 
 void tell_outcome(const RunOutcome& outcome) {
-  for (const std::string& warning : sum_up_warnings(outcome.reports)) spdlog::warn(warning);
+  for (const std::string& warning : sum_up_replaced(outcome.reports)) spdlog::warn(warning);
   if (outcome.clamped_pixels > 0)
     spdlog::warn("{} pixels were too bright for half floats and were clamped to 65504; --type float keeps them as they are",
                  outcome.clamped_pixels);

@@ -1,4 +1,4 @@
-// What a run tells when it is over: results, failures, and the warnings of all frames summed up.
+// What a run tells when it is over: results, failures, and what was wrong with the inputs of all frames, summed up.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,8 @@
 
 namespace quell::app {
 
-/// Warnings of many frames as few lines: those that differ only in a count ("color: 3 values were ...") are added up, and the
-/// frames are named.
-std::vector<std::string> sum_up_warnings(const std::vector<FrameReport>& reports);
+/// A line for each input that had values that are NaN or infinite, with their number and the frames.
+std::vector<std::string> sum_up_replaced(const std::vector<FrameReport>& reports);
 
 struct RunOutcome {
   const Job& job;

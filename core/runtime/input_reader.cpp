@@ -1,25 +1,15 @@
 #include "quell/runtime/input_reader.h"
 
-#include "quell/runtime/sanitize.h"
-
 namespace quell {
 
-std::string sanitize_input(const std::string& name, Item& item, Executor& executor, BufferPool& pool) {
-  const std::int64_t replaced = sanitize(item, executor, pool);
-  if (replaced == 0) return {};
-  const char* by = item.type() == QUELL_TYPE_DEPTH ? "1e10 (no surface)" : "0";
-  return name + ": " + std::to_string(replaced) + (replaced == 1 ? " value was" : " values were") +
-         " NaN or infinite and count as " + by;
-}
-
 InputReader::Read InputReader::read_one(const std::string& name, std::int64_t frame) {
-  Read read{source_.read(name, frame, pool_), {}};
+  Read read{source_.read(name, frame, pool_), 0};
   if (!read.item) throw Error(Fault::input, name, "the source has nothing for frame " + std::to_string(frame));
-  read.warning = sanitize_input(name, read.item, executor_, pool_);
+  read.replaced = sanitize(read.item, executor_, pool_);
   return read;
 }
 
-std::vector<Item> InputReader::read(std::int64_t frame, const Plan& plan, std::vector<std::string>& warnings) {
+std::vector<Item> InputReader::read(std::int64_t frame, const Plan& plan, std::vector<ReplacedValues>& replaced) {
   const auto& inputs = plan.graph->inputs;
   std::vector<Item> items(inputs.size());
   for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -27,7 +17,7 @@ std::vector<Item> InputReader::read(std::int64_t frame, const Plan& plan, std::v
     const auto early = ahead_.find({i, frame});
     Read read = early != ahead_.end() ? std::move(early->second) : read_one(inputs[i].name, frame);
     if (early != ahead_.end()) ahead_.erase(early);
-    if (!read.warning.empty()) warnings.push_back(read.warning);
+    if (read.replaced > 0) replaced.push_back({inputs[i].name, read.item.type(), read.replaced});
     items[i] = std::move(read.item);
   }
   return items;

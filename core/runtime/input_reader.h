@@ -11,19 +11,18 @@
 #include "quell/graph/plan.h"
 #include "quell/image/stream.h"
 #include "quell/runtime/executor.h"
+#include "quell/runtime/sanitize.h"
 
 namespace quell {
-
-/// "color: 3 values were NaN or infinite and count as 0", or "" when none were.
-std::string sanitize_input(const std::string& name, Item& item, Executor& executor, BufferPool& pool);
 
 class InputReader {
  public:
   InputReader(FrameSource& source, const std::vector<std::int64_t>& frames, Executor& executor, BufferPool& pool)
       : source_(source), frames_(frames.begin(), frames.end()), executor_(executor), pool_(pool) {}
 
-  /// One item for each graph input; nothing for those that the plan does not use. Throws what the source throws.
-  std::vector<Item> read(std::int64_t frame, const Plan& plan, std::vector<std::string>& warnings);
+  /// One item for each graph input; nothing for those that the plan does not use. What was replaced is added to `replaced`.
+  /// Throws what the source throws.
+  std::vector<Item> read(std::int64_t frame, const Plan& plan, std::vector<ReplacedValues>& replaced);
   /// A frame that lies ahead; nothing when it is not part of the run or cannot be read, which its own turn will report.
   Item read_ahead(std::size_t input, std::int64_t frame, const Plan& plan);
   /// Lets go of what was read ahead up to this frame.
@@ -32,7 +31,7 @@ class InputReader {
  private:
   struct Read {
     Item item;
-    std::string warning;
+    std::int64_t replaced = 0;  ///< values that were NaN or infinite
   };
   Read read_one(const std::string& name, std::int64_t frame);
 

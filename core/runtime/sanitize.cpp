@@ -38,6 +38,12 @@ std::int64_t sanitize_values(Item& item) {
 
 }  // namespace
 
+std::string describe(const ReplacedValues& replaced) {
+  return replaced.input + ": " + std::to_string(replaced.count) +
+         (replaced.count == 1 ? " value was NaN or infinite and counts as " : " values were NaN or infinite and count as ") +
+         (replaced.type == QUELL_TYPE_DEPTH ? "1e10 (no surface)" : "0");
+}
+
 std::int64_t sanitize(Item& item, Executor& executor, BufferPool& pool) {
   if (item.values()) return sanitize_values(item);
   const Image* image = item.image();

@@ -2,11 +2,21 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "quell/image/item.h"
 #include "quell/runtime/executor.h"
 
 namespace quell {
+
+/// Values of an input that were NaN or infinite, and were replaced.
+struct ReplacedValues {
+  std::string input;
+  PortType type = QUELL_TYPE_COLOR;
+  std::int64_t count = 0;
+};
+/// "color: 3 values were NaN or infinite and count as 0"
+std::string describe(const ReplacedValues& replaced);
 
 /// Replaces every value that is NaN or infinite: by 0, in depth by the distance of "no surface". Pixels that somebody else holds
 /// are copied first. Returns how many values were replaced; cameras and ids are left alone.

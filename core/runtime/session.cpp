@@ -53,7 +53,7 @@ struct Session::State {
 
   // Sizes are those of the frame; what it does not read is as the source offered it.
   void run_frame(FrameReport& report, InputReader& reader, InputShapes shapes, FrameSink& sink) {
-    std::vector<Item> inputs = reader.read(report.frame, frame_run->plan(), report.warnings);
+    std::vector<Item> inputs = reader.read(report.frame, frame_run->plan(), report.replaced);
     for (std::size_t i = 0; i < inputs.size(); ++i)
       if (inputs[i]) shapes[graph->inputs[i].name] = shape_of(inputs[i]);
     plan_for(shapes);
@@ -124,8 +124,9 @@ std::map<std::string, Item> Session::push(std::int64_t frame, const std::map<std
       throw Error(Fault::usage, s.graph->name,
                   "the graph has no input '" + name + "'" + did_you_mean(name, known) + "; it has " + list_names(known, "and"));
     Item& clean = items[static_cast<std::size_t>(place - known.begin())] = item;
-    const std::string warning = clean ? sanitize_input(name, clean, *s.executor, s.pool) : "";
-    if (!warning.empty() && s.options.log) s.options.log(QUELL_LOG_WARNING, "frame " + std::to_string(frame) + ": " + warning);
+    const std::int64_t replaced = clean ? sanitize(clean, *s.executor, s.pool) : 0;
+    if (replaced > 0 && s.options.log)
+      s.options.log(QUELL_LOG_WARNING, "frame " + std::to_string(frame) + ": " + describe({name, clean.type(), replaced}));
   }
   s.plan_for(shapes_of(inputs));
   const auto no_frames_ahead = [&](int input, int) -> Item {

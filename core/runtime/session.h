@@ -11,6 +11,7 @@
 #include "quell/graph/plan.h"
 #include "quell/image/stream.h"
 #include "quell/runtime/executor.h"
+#include "quell/runtime/sanitize.h"
 
 namespace quell {
 
@@ -18,8 +19,8 @@ namespace quell {
 struct FrameReport {
   std::int64_t frame = 0;
   bool ok = true;
-  std::string error;                  ///< where and why, when it failed
-  std::vector<std::string> warnings;  ///< what a person should know although the frame is fine
+  std::string error;                     ///< where and why, when it failed
+  std::vector<ReplacedValues> replaced;  ///< of each input that had such values
   double seconds = 0;
   std::vector<double> node_seconds;  ///< in the order of Plan::nodes
 };

@@ -8,24 +8,20 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-FrameReport report(std::int64_t frame, std::vector<std::string> warnings) {
+FrameReport report(std::int64_t frame, std::vector<ReplacedValues> replaced) {
   FrameReport result;
   result.frame = frame;
-  result.warnings = std::move(warnings);
+  result.replaced = std::move(replaced);
   return result;
 }
 
-TEST(RunSummary, AddsUpCountsOfTheSameWarning) {
-  EXPECT_THAT(
-      sum_up_warnings({report(1, {"color: 3 values were bad"}), report(2, {"color: 40 values were bad", "id: 1 value was bad"}),
-                       report(3, {}), report(5, {"color: 2 values were bad"})}),
-      ElementsAre("color: 45 values were bad (frames 1-2,5)", "id: 1 value was bad (frame 2)"));
-}
-
-TEST(RunSummary, TellsOtherWarningsOnceWithTheirFrames) {
-  EXPECT_THAT(sum_up_warnings({report(1, {"strange"}), report(2, {"strange"}), report(3, {"file.0001.exr: 2x2"})}),
-              ElementsAre("file.0001.exr: 2x2 (frame 3)", "strange (frames 1-2)"));
-  EXPECT_THAT(sum_up_warnings({}), IsEmpty());
+TEST(RunSummary, AddsUpTheReplacedValuesOfEachInput) {
+  EXPECT_THAT(sum_up_replaced({report(1, {{"color", QUELL_TYPE_COLOR, 3}}),
+                               report(2, {{"color", QUELL_TYPE_COLOR, 40}, {"z", QUELL_TYPE_DEPTH, 1}}), report(3, {}),
+                               report(5, {{"color", QUELL_TYPE_COLOR, 2}})}),
+              ElementsAre("color: 45 values were NaN or infinite and count as 0 (frames 1-2,5)",
+                          "z: 1 value was NaN or infinite and counts as 1e10 (no surface) (frame 2)"));
+  EXPECT_THAT(sum_up_replaced({report(1, {})}), IsEmpty());
 }
 
 }  // namespace
