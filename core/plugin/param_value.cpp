@@ -3,6 +3,8 @@
 #include <cassert>
 #include <charconv>
 
+#include "quell/text/json.h"
+
 namespace quell {
 namespace {
 
@@ -11,31 +13,15 @@ std::string number(auto value) {
   return {text, std::to_chars(text, text + sizeof(text), value).ptr};
 }
 
-std::string quote(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    if (c == '\n')
-      quoted += "\\n";
-    else if (c == '\t')
-      quoted += "\\t";
-    else if (static_cast<unsigned char>(c) < 0x20)
-      quoted += std::string("\\u00") + "01"[c >> 4] + "0123456789abcdef"[c & 15];
-    else
-      quoted += c;
-  }
-  return quoted + '"';
-}
-
 std::string element(const quell_param_desc& desc, std::uint8_t value) {
   assert(desc.type == QUELL_PARAM_BOOL);
   return value ? "true" : "false";
 }
 std::string element(const quell_param_desc& desc, std::int64_t value) {
-  return desc.type == QUELL_PARAM_ENUM ? quote(desc.enum_values[value]) : number(value);
+  return desc.type == QUELL_PARAM_ENUM ? quote_json(desc.enum_values[value]) : number(value);
 }
 std::string element(const quell_param_desc&, double value) { return number(value); }
-std::string element(const quell_param_desc&, const std::string& value) { return quote(value); }
+std::string element(const quell_param_desc&, const std::string& value) { return quote_json(value); }
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 
 #include "quell/text/diagnostic.h"
 #include "quell/text/error.h"
+#include "quell/text/json.h"
 
 namespace quell::harness {
 namespace {
@@ -26,18 +27,6 @@ std::uint32_t find_port(const quell_port_desc* ports, std::uint32_t count, std::
 }
 
 }  // namespace
-
-std::string json_string(std::string_view text) {
-  std::string json = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') json += '\\';
-    if (static_cast<unsigned char>(c) < 0x20)
-      json += std::string("\\u00") + "01"[c >> 4] + "0123456789abcdef"[c & 15];
-    else
-      json += c;
-  }
-  return json + '"';
-}
 
 std::string json_number(double value) {
   char text[32];
@@ -68,7 +57,7 @@ std::string PassGraph::input_list() const {
   std::vector<std::string> lines;
   for (const auto& [port, items] : inputs)
     for (std::size_t i = 0; i < items.size(); ++i)
-      lines.push_back(json_string(item_name(port, i)) + ": " + json_string(name(items[i].type())));
+      lines.push_back(quote_json(item_name(port, i)) + ": " + quote_json(name(items[i].type())));
   return join(lines);
 }
 
@@ -76,13 +65,13 @@ std::string PassGraph::connection_list() const {
   std::vector<std::string> lines;
   for (const auto& [port, items] : inputs) {
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < items.size(); ++i) names.push_back(json_string(item_name(port, i)));
+    for (std::size_t i = 0; i < items.size(); ++i) names.push_back(quote_json(item_name(port, i)));
     const std::string list = join(names);
     const bool array = is_array(port);
-    if (!items.empty()) lines.push_back(json_string(port) + ": " + (array ? "[" + list + "]" : list));
+    if (!items.empty()) lines.push_back(quote_json(port) + ": " + (array ? "[" + list + "]" : list));
   }
   for (const auto& [to, from] : feedback)
-    lines.push_back(json_string(to) + R"(: {"from": "pass.)" + from + R"(", "delay": 1, "initial": "none"})");
+    lines.push_back(quote_json(to) + R"(: {"from": "pass.)" + from + R"(", "delay": 1, "initial": "none"})");
   return join(lines);
 }
 
@@ -92,7 +81,7 @@ std::string PassGraph::output_list() const {
     const quell_port_desc& port = *QUELL_AT(quell_port_desc, desc.outputs, o);
     const bool array = (port.flags & QUELL_PORT_ARRAY) != 0;
     for (std::size_t i = 0; i < item_count(port); ++i)
-      lines.push_back(json_string(item_name(port.name, i)) + R"(: "pass.)" + port.name +
+      lines.push_back(quote_json(item_name(port.name, i)) + R"(: "pass.)" + port.name +
                       (array ? "[" + std::to_string(i) + "]" : "") + '"');
   }
   return join(lines);
@@ -100,8 +89,8 @@ std::string PassGraph::output_list() const {
 
 std::string PassGraph::text() const {
   std::vector<std::string> settings;
-  for (const auto& [param, value] : params) settings.push_back(json_string(param) + ": " + value);
-  return R"({"quell": 1, "inputs": {)" + input_list() + R"(}, "nodes": {"pass": {"pass": )" + json_string(desc.id) +
+  for (const auto& [param, value] : params) settings.push_back(quote_json(param) + ": " + value);
+  return R"({"quell": 1, "inputs": {)" + input_list() + R"(}, "nodes": {"pass": {"pass": )" + quote_json(desc.id) +
          R"(, "in": {)" + connection_list() + R"(}, "params": {)" + join(settings) + R"(}}}, "outputs": {)" + output_list() +
          "}}";
 }

@@ -11,7 +11,6 @@
 
 namespace quell::harness {
 
-std::string json_string(std::string_view text);
 /// The shortest text that reads back as the same double.
 std::string json_number(double value);
 

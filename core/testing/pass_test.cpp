@@ -96,7 +96,7 @@ PassTest::~PassTest() = default;
 PassTest::PassTest(PassTest&&) noexcept = default;
 
 PassTest& PassTest::set(std::string_view param, double value) { return set_json(param, json_number(value)); }
-PassTest& PassTest::set(std::string_view param, std::string_view text) { return set_json(param, json_string(text)); }
+PassTest& PassTest::set(std::string_view param, std::string_view text) { return set_json(param, quote_json(text)); }
 PassTest& PassTest::set(std::string_view param, const std::vector<double>& values) {
   std::string list;
   for (const double value : values) list += (list.empty() ? "" : ", ") + json_number(value);

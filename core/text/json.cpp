@@ -135,11 +135,12 @@ class Builder {
   bool after_key_ = false;
 };
 
-std::string quote(std::string_view text) {
+/// The beginning of a text, as a JSON string.
+std::string quote_beginning(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::size_t end = std::min(text.size(), kLongest);
   while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-  std::string result = nlohmann::json(text.substr(0, end)).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string result = quote_json(text.substr(0, end));
   if (end < text.size()) result.insert(result.size() - 1, "...");
   return result;
 }
@@ -184,13 +185,17 @@ std::string excerpt(const Json& value) {
       return {text, std::to_chars(text, text + sizeof(text), value.number).ptr};
     }
     case Json::Kind::string:
-      return quote(value.string);
+      return quote_beginning(value.string);
     case Json::Kind::array:
       return value.elements.empty() ? "[]" : "[...]";
     case Json::Kind::object:
       return value.members.empty() ? "{}" : "{...}";
   }
   return "";
+}
+
+std::string quote_json(std::string_view text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 std::optional<Json> parse_json(const SourceTextPtr& text, Diagnostics& errors) {

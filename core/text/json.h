@@ -41,6 +41,9 @@ std::string_view describe(Json::Kind kind);
 /// The value as a person would write it in a message, shortened: `"big"`, `12`, `[...]`.
 std::string excerpt(const Json& value);
 
+/// A text as a JSON string, in its double quotes. Bytes that are not UTF-8 become U+FFFD.
+std::string quote_json(std::string_view text);
+
 /// Parses a text. Syntax errors, duplicate keys and numbers out of range are added to `errors`; a syntax error yields nothing.
 std::optional<Json> parse_json(const SourceTextPtr& text, Diagnostics& errors);
 /// Reads a whole text file. Throws Error(fault) when it is missing, unreadable or larger than `max_bytes`.
