@@ -8,6 +8,7 @@
 #include "quell/runtime/frame_run.h"
 #include "quell/testing/pass_graph.h"
 #include "quell/text/diagnostic.h"
+#include "quell/text/json.h"
 
 namespace quell {
 
