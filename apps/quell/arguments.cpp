@@ -54,9 +54,10 @@ void add_options(CLI::App& app, SequenceArguments& arguments) {
       "The files of one input of the graph, such as color=shot/beauty_%d.exr or depth=z.####.exr; repeatable. Settings "
       "may follow: id=ID_%d.exr:background=-1, also :type=, :channels=R,G,B and :format=.")
       ->group(kInputGroup);
-  add_text(app, "--frames", arguments.frames, "RANGE",
-           "Frames to compute: 1-100, 1-100x2 (every second), 1,5,9-12. Without it, those of the sequence.json, or all for "
-           "which every input exists.")
+  app.add_option("--frames", arguments.frames,
+                 "Frames to compute: 1-100, 1-100x2 (every second), 1,5,9-12. Without it, those of the sequence.json, or all for "
+                 "which every input exists.")
+      ->type_name("RANGE")
       ->group(kInputGroup);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,7 @@ struct GraphArguments {
 struct SequenceArguments {
   std::filesystem::path sequence;  ///< empty when not given
   std::vector<std::string> in;
-  std::string frames;  ///< empty when not given
+  std::optional<std::string> frames;
 
   bool given() const { return !sequence.empty() || !in.empty(); }
 };

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "quell/text/diagnostic.h"
+
 namespace quell::app {
 namespace {
 
@@ -67,7 +69,7 @@ void Console::draw_status() {
 }
 
 void Console::sink_it_(const spdlog::details::log_msg& message) {
-  std::string text(message.payload.data(), message.payload.size());
+  std::string text = printable({message.payload.data(), message.payload.size()});  // files' names may hold anything
   const Style style = style_of(message.level);
   if (!style.label.empty() && !names_its_place(text)) {
     const std::string label(style.label);

@@ -33,7 +33,7 @@ std::unique_ptr<Sequence> open_sequence(const Graph& graph, const SequenceArgume
   SequenceOptions options;
   options.in = arguments.in;
   options.wanted = names_of_inputs(graph);
-  if (!arguments.frames.empty()) options.frames = FrameRange::parse(arguments.frames);
+  if (arguments.frames) options.frames = FrameRange::parse(*arguments.frames);
   std::unique_ptr<Sequence> sequence = Sequence::open(arguments.sequence, options);
   for (const GraphInput& input : graph.inputs) sequence->expect(input.name, input.type);
   return sequence;

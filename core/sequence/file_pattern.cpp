@@ -31,6 +31,7 @@ class Scanner {
   std::optional<Counter> counter;
 
   void scan() {
+    if (const std::size_t zero = text_.find('\0'); zero != std::string_view::npos) fail(zero, "no file's name holds a zero byte");
     for (std::size_t i = 0; i < text_.size();) {
       if (text_[i] == '#') {
         const std::size_t end = std::min(text_.find_first_not_of('#', i), text_.size());

@@ -49,5 +49,11 @@ TEST_F(ConsoleTest, DoesNotLabelWhatNamesItsOwnPlace) {
   EXPECT_EQ(written(), "g.json:1:2: error: wrong\nerror: wrong\nerror: wrong without a place\n");
 }
 
+TEST_F(ConsoleTest, ShowsNoControlCharactersOfFileNames) {
+  Console console(stream_, true, false);
+  log(console, spdlog::level::info, "a\x1b[2J\rb\n\xc3\xa4");
+  EXPECT_EQ(written(), "a?[2J?b\n\xc3\xa4\n");
+}
+
 }  // namespace
 }  // namespace quell::app::testing

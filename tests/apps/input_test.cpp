@@ -49,6 +49,13 @@ TEST_F(Input, FramesThatAreMisspeltAreShown) {
   EXPECT_THAT(outcome.err, HasSubstr("\n    3-1\n      ^\n"));
 }
 
+TEST_F(Input, FramesThatAreEmptyAreNotAllFrames) {
+  make_shot(2);
+  const Outcome outcome = run({"run", make_graph(), text("shot"), "-o", text("out"), "--frames", ""});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--frames:1:1: error: a frame number is missing here"));
+}
+
 TEST_F(Input, FramesAskedForThatAreMissingAreNamed) {
   make_shot(2);
   const Outcome outcome = run({"run", make_graph(), text("shot"), "-o", text("out"), "--frames", "2-4", "-q"});

@@ -14,6 +14,10 @@ std::string error(std::string_view text) {
   return message_of(Fault::usage, [&] { pattern(text); });
 }
 
+TEST(FilePattern, HoldsNoZeroByte) {
+  EXPECT_THAT(error(std::string_view("a\0b.####.exr", 12)), HasSubstr("--in:1:2: error: no file's name holds a zero byte"));
+}
+
 TEST(FilePattern, NamesTheFileOfAFrame) {
   EXPECT_EQ(pattern("beauty_%d.exr").path(12), "folder/beauty_12.exr");
   EXPECT_EQ(pattern("a.%04d.exr").path(12), "folder/a.0012.exr");
