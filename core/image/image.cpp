@@ -1,13 +1,39 @@
 #include "quell/image/image.h"
 
+#include <unistd.h>
+
 #include <cassert>
+#include <string>
 
 #include "quell/text/error.h"
 
 namespace quell {
 namespace {
+
 constexpr std::ptrdiff_t kLine = 64 / sizeof(float);  // elements in a cache line, which is also the widest vector
+
+std::size_t physical_memory() {
+  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
+
+std::string gibibytes(std::size_t bytes) {
+  const std::size_t tenths = bytes / ((std::size_t{1} << 30) / 10);
+  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " GiB";
+}
+
+// What only a broken or hostile header asks for, told before memory is taken: the system would hand it out, and kill the program
+// when it is used.
+void check_size(PortType type, Size size) {
+  const auto allowed = [](int side) { return side >= 1 && side <= Image::kMaxSize; };
+  const std::string image = "an image of " + std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels";
+  if (!allowed(size.width) || !allowed(size.height))
+    throw Error(Fault::input, "", image + "; sides from 1 to " + std::to_string(Image::kMaxSize) + " are possible");
+  const std::size_t bytes = Image::bytes_needed(type, size);
+  if (bytes > physical_memory())
+    throw Error(Fault::input, "", image + " takes " + gibibytes(bytes) + "; this machine has " + gibibytes(physical_memory()));
+}
+
+}  // namespace
 
 std::ptrdiff_t Image::row_stride(int width) {
   const std::ptrdiff_t lines = (width + kLine - 1) / kLine;
@@ -21,11 +47,7 @@ std::size_t Image::bytes_needed(PortType type, Size size) {
 
 Image::Image(PortType type, Size size, BufferPool& pool, int spare_lines) : type_(type), size_(size) {
   assert(is_image(type));
-  const auto allowed = [](int side) { return side >= 1 && side <= kMaxSize; };
-  if (!allowed(size.width) || !allowed(size.height) || bytes_needed(type, size) > kMaxBytes)
-    throw Error(Fault::input, "",
-                "an image of " + std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels; sides from 1 to " +
-                    std::to_string(kMaxSize) + " and up to 1 TiB are possible");
+  check_size(type, size);
   row_stride_ = row_stride(size.width) + spare_lines * kLine;
   plane_stride_ = row_stride_ * size.height + spare_lines * kLine;
   buffer_ = pool.acquire(static_cast<std::size_t>(plane_stride_) * static_cast<std::size_t>(channels()) * sizeof(float));

@@ -13,11 +13,12 @@ namespace quell {
 /// Planes of float32 (uint32 for ids). Copies share the pixels: treat an image that has been handed on as read-only.
 class Image {
  public:
-  static constexpr int kMaxSize = 1 << 16;  // pixels a side; larger ones come from broken headers
-  static constexpr std::size_t kMaxBytes = std::size_t{1} << 40;
+  static constexpr int kMaxSize = 1 << 16;                        // pixels a side; larger ones come from broken headers
+  static constexpr std::size_t kMaxBytes = std::size_t{1} << 40;  // in plans, which may be made on another machine
 
   Image() = default;
-  /// Pixels are unspecified. Throws Error when a size is not within 1..kMaxSize, std::bad_alloc when memory runs out.
+  /// Pixels are unspecified. Throws Error when a size is not within 1..kMaxSize or takes more memory than the machine has,
+  /// std::bad_alloc when memory runs out.
   /// `spare_lines` cache lines are added to each row and plane: tests show with it that a pass heeds the strides.
   Image(PortType type, Size size, BufferPool& pool, int spare_lines = 0);
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <cstdint>
 
 #include "quell/image/item.h"
@@ -67,9 +69,18 @@ TEST(Image, SaysWhichSizesArePossible) {
   try {
     Image(QUELL_TYPE_COLOR, {0, 4}, pool);
     FAIL();
-  } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "an image of 0 x 4 pixels; sides from 1 to 65536 and up to 1 TiB are possible");
-  }
+  } catch (const Error& error) { EXPECT_STREQ(error.what(), "an image of 0 x 4 pixels; sides from 1 to 65536 are possible"); }
+}
+
+TEST(Image, RefusesWhatTheMachineCannotHold) {
+  BufferPool pool;
+  const Size largest{Image::kMaxSize, Image::kMaxSize};
+  const auto memory = static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  if (memory > Image::bytes_needed(QUELL_TYPE_COLOR, largest)) GTEST_SKIP() << "this machine could hold the largest image";
+  EXPECT_THAT([&] { Image(QUELL_TYPE_COLOR, largest, pool); },
+              ::testing::ThrowsMessage<Error>(
+                  ::testing::StartsWith("an image of 65536 x 65536 pixels takes 48.0 GiB; this machine has ")));
+  EXPECT_EQ(pool.usage().allocated, 0U);
 }
 
 TEST(Image, SharesItsPixelsWithACopyOfAnotherType) {
