@@ -63,6 +63,13 @@ bool append(int& stream, std::string& text) {
 
 }  // namespace
 
+bool terminals_exist() {
+  std::array<int, 2> ends{};
+  if (openpty(&ends[0], &ends[1], nullptr, nullptr, nullptr) != 0) return false;
+  for (const int end : ends) close(end);
+  return true;
+}
+
 Program::Program(const std::vector<std::string>& arguments, bool on_terminal, const std::vector<std::string>& environment,
                  const char* output_file) {
   const Pipe out = make_pipe(false), err = make_pipe(on_terminal);

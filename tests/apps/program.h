@@ -34,6 +34,9 @@ class Program {
   Outcome outcome_;
 };
 
+/// Whether pseudo-terminals can be had; in a bare container /dev/pts may be missing.
+bool terminals_exist();
+
 /// Runs quell to its end.
 Outcome quell(const std::vector<std::string>& arguments);
 

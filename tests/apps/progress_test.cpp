@@ -51,6 +51,7 @@ TEST(Progress, WritesSizesAsPeopleDo) {
 class ProgressOnATerminal : public RunnerTest {};
 
 TEST_F(ProgressOnATerminal, RedrawsOneLineAndTakesItAway) {
+  if (!terminals_exist()) GTEST_SKIP() << "no pseudo-terminals here";
   make_shot(3);
   const std::string graph = make_graph();
   const Outcome outcome = Program({"run", graph, text("shot"), "-o", text("out"), "--plugin-path", TEST_PLUGINS}, true).finish();
@@ -62,6 +63,7 @@ TEST_F(ProgressOnATerminal, RedrawsOneLineAndTakesItAway) {
 }
 
 TEST_F(ProgressOnATerminal, IsPlainOnADumbTerminal) {
+  if (!terminals_exist()) GTEST_SKIP() << "no pseudo-terminals here";
   make_shot(1);
   const std::string graph = make_graph();
   const Outcome outcome =
