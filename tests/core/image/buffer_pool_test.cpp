@@ -59,7 +59,8 @@ TEST(BufferPool, GivesIdleBlocksBackWhenTrimmed) {
   EXPECT_EQ(pool.usage().idle, 0U);
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which takes a request that large for a mistake of the program
+// Sanitizers take a request that large for a mistake of the program.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 TEST(BufferPool, GivesIdleBlocksBackBeforeItGivesUp) {
   BufferPool pool;
   pool.acquire(100);
