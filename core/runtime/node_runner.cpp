@@ -136,16 +136,6 @@ struct NodeRunner::Tables {
     call.slot_scratch = scratch.slot_pointers.data();
     return call;
   }
-
-  quell_status process(std::int64_t frame) {
-    const quell_exec call = exec(frame);
-    try {
-      return pass.process(host.raw(), call);
-    } catch (...) {  // only a plugin that breaks the rule gets here
-      host.raw().set_error(&host.raw(), "an exception left the pass");
-      return QUELL_FAILED;
-    }
-  }
 };
 
 NodeRunner::NodeRunner(std::string name, const PassInstance& pass, NodeLayout layout, const HostServices& services,
@@ -164,7 +154,7 @@ void NodeRunner::run(std::int64_t frame, PortItems& inputs, PortItems& outputs) 
     t.raw_outputs[o].set_output(outputs[o], t.layout.outputs[o]), t.outputs[o] = t.raw_outputs[o].raw();
 
   t.host.take_error();
-  const quell_status status = t.process(frame);
+  const quell_status status = t.pass.process(t.host.raw(), t.exec(frame));
   t.scratch = {};
   inputs.clear();
   const std::string reason = t.host.take_error();
