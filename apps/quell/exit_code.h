@@ -11,6 +11,7 @@ enum ExitCode : int {
   kUsage = 2,         // command line, graph or parameter
   kInput = 3,         // a sequence, image or camera that is missing or unreadable
   kPlugin = 4,        // a plugin that was asked for does not load, or a pass breaks the interface
+  kMemory = 33,       // the memory limit is too small for a single frame; render farms try again with more
   kInternal = 70,     // EX_SOFTWARE of sysexits.h
   kInterrupted = 75,  // EX_TEMPFAIL: the same command may be given again
 };
@@ -25,6 +26,8 @@ constexpr ExitCode exit_code(Fault fault) {
       return kPlugin;
     case Fault::frame:
       return kFramesFailed;
+    case Fault::memory:
+      return kMemory;
   }
   return kInternal;
 }

@@ -12,6 +12,7 @@
 #include "quell/image/stream.h"
 #include "quell/runtime/executor.h"
 #include "quell/runtime/sanitize.h"
+#include "quell/runtime/trace.h"
 
 namespace quell {
 
@@ -20,20 +21,33 @@ struct FrameReport {
   std::int64_t frame = 0;
   bool ok = true;
   std::string error;                     ///< where and why, when it failed
+  std::string node;                      ///< the node that failed; empty when the frame could not be read or written
   std::vector<ReplacedValues> replaced;  ///< of each input that had such values
-  double seconds = 0;
-  std::vector<double> node_seconds;  ///< in the order of Plan::nodes
+  double seconds = 0;                    ///< from the first input until the last output, with what it waited for
+  double read_seconds = 0;               ///< sum over its inputs
+  double write_seconds = 0;              ///< sum over its outputs
+  std::vector<double> node_seconds;      ///< in the order of Plan::nodes; 0 for a node that did not run
+};
+
+/// How run() goes through nodes and frames. The results are the same.
+enum class Schedule {
+  concurrent,  ///< whatever is ready: nodes of several frames at a time, reading ahead and writing behind
+  serial,      ///< one node after the other, each parallel inside: the reference that the other must equal bit for bit
 };
 
 struct SessionOptions {
-  int threads = 0;                      ///< 0: as many as this process may use
+  int threads = 0;  ///< that compute, decode and encode at a time; 0: as many as this process may use
+  Schedule schedule = Schedule::concurrent;
+  int frames_in_flight = 0;             ///< most frames at a time, from reading to writing; 0: see choose_window()
+  std::size_t memory = 0;               ///< most bytes that the pool may hold; 0: half of what this process may have
+  bool stop_on_error = false;           ///< no frame after one that failed is handed out
   std::vector<std::string> dumps = {};  ///< inner images ("node.port", or a graph input) handed out beside the outputs
   std::function<void(int level, const std::string& message)> log = {};  ///< levels QUELL_LOG_*; from any thread
   std::function<bool()> cancelled = {};                                 ///< asked often, from any thread
-  std::function<void(const FrameReport&)> on_frame = {};                ///< after each frame of run(), in order
+  std::function<void(const FrameReport&)> on_frame = {};  ///< after each frame of run(), in order, on the caller's thread
+  Trace* trace = nullptr;                                 ///< told what ran when; may be null
 };
 
-/// One node after the other, each parallel inside: the reference that every other way of running must equal bit for bit.
 /// Not thread-safe. History lasts as long as the session, and starts anew when the size of the images changes.
 class Session {
  public:

@@ -13,6 +13,7 @@ enum class Fault {
   input,   ///< a sequence, image or camera that is missing or unreadable
   plugin,  ///< a plugin that does not load, or a pass that breaks the interface
   frame,   ///< a frame that could not be computed or written
+  memory,  ///< a memory limit within which not even one frame fits
 };
 
 /// `where` names the place (a file, file:line:column, a node, an option), `what` says what is wrong and what would be right.
