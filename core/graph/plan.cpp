@@ -108,6 +108,8 @@ Shape Plan::shape(const Endpoint& endpoint) const {
   return found->outputs[static_cast<std::size_t>(endpoint.port)][static_cast<std::size_t>(endpoint.item)];
 }
 
+std::size_t Plan::bytes(const Endpoint& endpoint) const { return planning::bytes_of(shape(endpoint)); }
+
 std::vector<PlannedResult> Plan::results() const {
   std::vector<PlannedResult> all;
   for (const int index : outputs) {

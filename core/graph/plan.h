@@ -57,9 +57,12 @@ struct Plan {
   /// Largest sum of buffers alive at a time in one frame: inputs and scratch memory included; history, and the scratch memory of
   /// single threads, not. All sums stop at SIZE_MAX.
   std::size_t frame_bytes = 0;
+  std::vector<std::size_t> alive_bytes;  ///< the same sum while each of `nodes` runs; its scratch memory included
   std::size_t history_bytes = 0;
   std::size_t unshared_bytes = 0;  ///< what a frame would need if no buffer were reused
 
+  /// Bytes of the pool that an endpoint's item takes.
+  std::size_t bytes(const Endpoint& endpoint) const;
   /// Shape of what an endpoint carries; present is false when it is never there.
   Shape shape(const Endpoint& endpoint) const;
   /// The outputs, then the dumps.

@@ -93,6 +93,17 @@ std::size_t released_bytes(const Plan& plan, const PlannedNode& planned) {
   return bytes;
 }
 
+std::vector<std::size_t> count_alive_bytes(const Plan& plan) {
+  std::vector<std::size_t> counts;
+  std::size_t alive = input_bytes(plan);
+  for (const PlannedNode& planned : plan.nodes) {
+    alive = add(alive, output_bytes(planned, false));
+    counts.push_back(add(alive, planned.scratch_bytes));
+    alive -= std::min(alive, released_bytes(plan, planned));
+  }
+  return counts;
+}
+
 }  // namespace
 
 std::size_t bytes_of(const Shape& shape) {
@@ -120,17 +131,6 @@ void plan_histories(Plan& plan, const Presence& presence) {
   for (const auto& [endpoint, history] : histories) plan.histories.push_back(history);
 }
 
-std::vector<std::size_t> count_alive_bytes(const Plan& plan) {
-  std::vector<std::size_t> counts;
-  std::size_t alive = input_bytes(plan);
-  for (const PlannedNode& planned : plan.nodes) {
-    alive = add(alive, output_bytes(planned, false));
-    counts.push_back(add(alive, planned.scratch_bytes));
-    alive -= std::min(alive, released_bytes(plan, planned));
-  }
-  return counts;
-}
-
 void plan_buffers(Plan& plan, const Presence& presence) {
   const Uses uses = find_uses(plan, presence);
   for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
@@ -140,7 +140,8 @@ void plan_buffers(Plan& plan, const Presence& presence) {
     planned.last_uses = find_last_uses(plan, presence, uses, i);
   }
   plan.frame_bytes = plan.unshared_bytes = input_bytes(plan);
-  for (const std::size_t alive : count_alive_bytes(plan)) plan.frame_bytes = std::max(plan.frame_bytes, alive);
+  plan.alive_bytes = count_alive_bytes(plan);
+  for (const std::size_t alive : plan.alive_bytes) plan.frame_bytes = std::max(plan.frame_bytes, alive);
   for (const PlannedNode& planned : plan.nodes)
     plan.unshared_bytes = add(plan.unshared_bytes, add(output_bytes(planned, true), planned.scratch_bytes));
   for (const PlannedHistory& history : plan.histories) plan.history_bytes = add(plan.history_bytes, bytes_of(history));

@@ -15,9 +15,6 @@ void plan_histories(Plan& plan, const Presence& presence);
 /// Fills in_place_of (what remains of what the passes allow), last_uses, and the sums of bytes. Needs shapes and histories.
 void plan_buffers(Plan& plan, const Presence& presence);
 
-/// Bytes alive while each node of the plan runs: what is still needed, the node's outputs and its scratch memory.
-std::vector<std::size_t> count_alive_bytes(const Plan& plan);
-
 /// Memory of one item; cameras need none to speak of.
 std::size_t bytes_of(const Shape& shape);
 /// Memory of all frames that are kept.

@@ -62,7 +62,7 @@ class Printer {
   }
 
   std::string nodes() const {
-    const std::vector<std::size_t> alive = count_alive_bytes(plan_);
+    const std::vector<std::size_t>& alive = plan_.alive_bytes;
     std::vector<std::string> headings;
     std::size_t width = 0;
     for (const PlannedNode& planned : plan_.nodes) {
@@ -184,7 +184,7 @@ class Printer {
   }
 
   std::string memory() const {
-    const std::vector<std::size_t> alive = count_alive_bytes(plan_);
+    const std::vector<std::size_t>& alive = plan_.alive_bytes;
     std::string most = format_bytes(plan_.unshared_bytes) + " if no buffer were used twice";
     if (const auto largest = std::max_element(alive.begin(), alive.end()); largest != alive.end()) {
       const PlannedNode& planned = plan_.nodes[static_cast<std::size_t>(largest - alive.begin())];
