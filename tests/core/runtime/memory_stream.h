@@ -1,4 +1,5 @@
-// Frames in memory: a source that is told what to serve, and a sink that keeps what it gets.
+// Frames in memory: a source that is told what to serve, and a sink that keeps what it gets. Sessions call both from any thread;
+// the fields are for before and after a run.
 #pragma once
 
 #include <functional>
@@ -53,13 +54,19 @@ class MemorySource final : public FrameSource {
     return Shape{QUELL_TYPE_COLOR, size, 0, true};
   }
   Item read(std::string_view input, std::int64_t frame, BufferPool& pool) override {
-    reads.emplace_back(input, frame);
+    {
+      const std::scoped_lock lock(mutex_);
+      reads.emplace_back(input, frame);
+    }
     if (unreadable.contains(frame)) throw Error(Fault::input, "color." + std::to_string(frame) + ".exr", "no such file");
     const auto odd = odd_size.find(frame);
     Image image = flat_color(odd == odd_size.end() ? size : odd->second, static_cast<float>(frame), pool);
     paint(image, frame);
     return image;
   }
+
+ private:
+  std::mutex mutex_;
 };
 
 class MemorySink final : public FrameSink {
@@ -69,12 +76,20 @@ class MemorySink final : public FrameSink {
 
   void write(std::string_view output, std::int64_t frame, const Item& item) override {
     if (unwritable.contains(frame)) throw Error(Fault::frame, "out.exr", "disk full");
+    const std::scoped_lock lock(mutex_);
     items[{std::string(output), frame}] = item;
   }
-  bool has(const std::string& output, std::int64_t frame) const { return items.contains({output, frame}); }
+  bool has(const std::string& output, std::int64_t frame) const {
+    const std::scoped_lock lock(mutex_);
+    return items.contains({output, frame});
+  }
   float pixel(const std::string& output, std::int64_t frame, int x = 0, int y = 0) const {
+    const std::scoped_lock lock(mutex_);
     return items.at({output, frame}).image()->floats().at(x, y);
   }
+
+ private:
+  mutable std::mutex mutex_;
 };
 
 /// The sum of all frames so far.
