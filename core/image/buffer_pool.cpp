@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <limits>
 #include <new>
 #include <optional>
 #include <utility>
@@ -12,49 +13,88 @@ namespace {
 constexpr std::align_val_t kAlignment{64};
 }
 
-// Blocks that come back wait here, by size. The state is shared with every block that is out, so it outlives the pool.
+// The state is shared with every block that is out, so it outlives the pool.
 struct BufferPool::State {
   std::mutex mutex;
-  std::map<std::size_t, std::vector<Buffer::Block*>> idle;
+  std::map<std::size_t, Buffer::Block*> idle;  // the blocks that came back, by size: lists, empty ones included
   Usage usage;
+  std::size_t limit = std::numeric_limits<std::size_t>::max();
   std::optional<unsigned char> fill;  // what blocks hold when they are handed out; nothing: whatever they held
   bool open = true;                   // false once the pool is gone: nothing is kept any more
 
-  void take_back(Buffer::Block* block);
-  void free_idle();
+  Buffer::Block* take_idle(std::size_t bytes);                                   // null when there is none
+  Buffer::Block* take_from_system(std::size_t bytes, std::size_t held_with_it);  // which are in_use already
+  void take_back(Buffer::Block* block) noexcept;
+  void free_idle(std::size_t most) noexcept;  // until `most` bytes are held, or none is idle
+  std::size_t held() const { return usage.in_use + usage.idle; }
 };
 
 struct Buffer::Block {
   std::atomic<int> holders{1};
   std::size_t bytes = 0;
   void* data = nullptr;
+  Block* next = nullptr;                     // of the idle blocks of this size
   std::shared_ptr<BufferPool::State> state;  // set while somebody holds the block
 
   explicit Block(std::size_t size) : bytes(size), data(::operator new(size, kAlignment)) {}
   ~Block() { ::operator delete(data, kAlignment); }
+  static Block* try_make(std::size_t size) {
+    try {
+      return new Block(size);
+    } catch (const std::bad_alloc&) { return nullptr; }
+  }
   Block(const Block&) = delete;
   Block& operator=(const Block&) = delete;
 };
 
-void BufferPool::State::take_back(Buffer::Block* block) {
-  {
-    const std::scoped_lock lock(mutex);
-    usage.in_use -= block->bytes;
-    if (open) {
-      idle[block->bytes].push_back(block);
-      usage.idle += block->bytes;
-      return;
-    }
-  }
-  delete block;
+Buffer::Block* BufferPool::State::take_idle(std::size_t bytes) {
+  Buffer::Block*& first = idle[bytes];
+  if (!first) return nullptr;
+  Buffer::Block* block = std::exchange(first, first->next);
+  usage.idle -= bytes;
+  block->holders.store(1, std::memory_order_relaxed);
+  return block;
 }
 
-void BufferPool::State::free_idle() {
-  for (auto& [bytes, blocks] : idle) {
-    for (Buffer::Block* block : blocks) delete block;
-    usage.idle -= bytes * blocks.size();
-    blocks.clear();
+Buffer::Block* BufferPool::State::take_from_system(std::size_t bytes, std::size_t held_with_it) {
+  Buffer::Block* block = Buffer::Block::try_make(bytes);
+  if (!block) {  // blocks of other sizes that nobody holds may make room
+    {
+      const std::scoped_lock lock(mutex);
+      free_idle(0);
+      held_with_it = held();
+    }
+    block = Buffer::Block::try_make(bytes);
   }
+  const std::scoped_lock lock(mutex);
+  if (!block) {
+    usage.in_use -= bytes;
+    throw std::bad_alloc();
+  }
+  ++usage.allocated;
+  usage.peak = std::max(usage.peak, held_with_it);
+  return block;
+}
+
+void BufferPool::State::take_back(Buffer::Block* block) noexcept {
+  const std::scoped_lock lock(mutex);
+  const bool keep = open && held() <= limit;
+  usage.in_use -= block->bytes;
+  if (!keep) {
+    delete block;
+    return;
+  }
+  block->next = std::exchange(idle.find(block->bytes)->second, block);  // the list is there since the block was asked for
+  usage.idle += block->bytes;
+}
+
+void BufferPool::State::free_idle(std::size_t most) noexcept {
+  for (auto list = idle.rbegin(); list != idle.rend(); ++list)
+    while (list->second && held() > most) {
+      Buffer::Block* block = std::exchange(list->second, list->second->next);
+      usage.idle -= block->bytes;
+      delete block;
+    }
 }
 
 Buffer::Buffer(const Buffer& other) : block_(other.block_) {
@@ -79,41 +119,24 @@ BufferPool::BufferPool() : state_(std::make_shared<State>()) {}
 BufferPool::~BufferPool() {
   const std::scoped_lock lock(state_->mutex);
   state_->open = false;
-  state_->free_idle();
-}
-
-Buffer::Block* BufferPool::new_block(std::size_t bytes) {
-  try {
-    return new Buffer::Block(bytes);
-  } catch (const std::bad_alloc&) {
-    trim();  // blocks of other sizes that nobody holds may make room
-    return new Buffer::Block(bytes);
-  }
+  state_->free_idle(0);
 }
 
 Buffer BufferPool::acquire(std::size_t bytes) {
+  bytes = std::max<std::size_t>(bytes, 1);
+  State& state = *state_;
   Buffer::Block* block = nullptr;
+  std::size_t held_with_it = 0;
   {
-    const std::scoped_lock lock(state_->mutex);
-    auto& idle = state_->idle[bytes];
-    if (!idle.empty()) {
-      block = idle.back();
-      idle.pop_back();
-      state_->usage.idle -= bytes;
-      state_->usage.in_use += bytes;
-      block->holders.store(1, std::memory_order_relaxed);
-    }
+    const std::scoped_lock lock(state.mutex);
+    block = state.take_idle(bytes);
+    if (!block) state.free_idle(bytes < state.limit ? state.limit - bytes : 0);
+    state.usage.in_use += bytes;  // before they are taken from the system, so that threads that do so at a time see each other
+    held_with_it = state.held();
   }
-  if (!block) {
-    block = new_block(bytes);
-    const std::scoped_lock lock(state_->mutex);
-    Usage& usage = state_->usage;
-    usage.in_use += bytes;
-    ++usage.allocated;
-    usage.peak = std::max(usage.peak, usage.in_use + usage.idle);
-  }
+  if (!block) block = state.take_from_system(bytes, held_with_it);
   block->state = state_;
-  if (state_->fill) std::memset(block->data, *state_->fill, bytes);
+  if (state.fill) std::memset(block->data, *state.fill, bytes);
   return Buffer(block);
 }
 
@@ -122,11 +145,17 @@ BufferPool::Usage BufferPool::usage() const {
   return state_->usage;
 }
 
+void BufferPool::set_limit(std::size_t bytes) {
+  const std::scoped_lock lock(state_->mutex);
+  state_->limit = bytes > 0 ? bytes : std::numeric_limits<std::size_t>::max();
+  state_->free_idle(state_->limit);
+}
+
 void BufferPool::fill(unsigned char byte) { state_->fill = byte; }
 
 void BufferPool::trim() {
   const std::scoped_lock lock(state_->mutex);
-  state_->free_idle();
+  state_->free_idle(0);
 }
 
 }  // namespace quell

@@ -41,7 +41,7 @@ class BufferPool {
   struct Usage {
     std::size_t in_use = 0;     ///< bytes held by somebody
     std::size_t idle = 0;       ///< bytes kept for reuse
-    std::size_t peak = 0;       ///< largest in_use + idle so far
+    std::size_t peak = 0;       ///< largest in_use + idle so far; requests that failed do not count
     std::size_t allocated = 0;  ///< blocks taken from the system so far
   };
   BufferPool();
@@ -49,9 +49,13 @@ class BufferPool {
   BufferPool(const BufferPool&) = delete;
   BufferPool& operator=(const BufferPool&) = delete;
 
-  /// At least `bytes` bytes, 64-byte aligned, content unspecified. Throws std::bad_alloc when there is no room even without the
-  /// idle blocks.
+  /// At least `bytes` bytes, 64-byte aligned, content unspecified; without an allocation when a block of that size is idle.
+  /// Throws std::bad_alloc when the system has no room even without the idle blocks.
   Buffer acquire(std::size_t bytes);
+  /// From now on in_use + idle stays within `bytes` (0: no limit) for as long as in_use alone does: idle blocks go back to the
+  /// system, the largest first. A request is met all the same when in_use would pass the limit, so whoever decides what work
+  /// begins has to count what it will hold; then nothing is kept idle.
+  void set_limit(std::size_t bytes);
   Usage usage() const;
   /// Gives idle blocks back to the system.
   void trim();
@@ -62,7 +66,6 @@ class BufferPool {
  private:
   friend class Buffer;
   struct State;
-  Buffer::Block* new_block(std::size_t bytes);
   std::shared_ptr<State> state_;
 };
 
