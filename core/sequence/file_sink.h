@@ -51,6 +51,7 @@ class FileSink final : public FrameSink {
   std::vector<std::filesystem::path> files(std::string_view output, std::int64_t frame, PortType type) const;
   /// Makes the folder when needed. Throws Error(frame) when a file cannot be written.
   void write(std::string_view output, std::int64_t frame, const Item& item) override;
+  bool uses_processor() const override { return true; }
 
   /// The files written so far, sorted.
   std::vector<std::filesystem::path> written() const;

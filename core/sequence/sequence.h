@@ -73,6 +73,7 @@ class Sequence final : public FrameSource {
   std::optional<Shape> shape(std::string_view input) override;
   /// Pixels that are not finite are passed on as they are, except depths (see convert.h).
   Item read(std::string_view input, std::int64_t frame, BufferPool& pool) override;
+  bool uses_processor() const override { return true; }
 
  private:
   struct State;
