@@ -1,42 +1,55 @@
 // What delayed edges carry: results of earlier frames, by frame number.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <map>
 #include <utility>
+#include <vector>
 
 #include "quell/graph/plan.h"
 
 namespace quell {
 
-/// Keeps, of each endpoint, the frames that the plan's delays reach back to. A frame that is computed again replaces its former
-/// self; going back to an earlier one forgets those after it.
+/// A line for each of Plan::histories: the frames that the delays reach back to, and those in flight. Not thread-safe.
 class History {
  public:
-  explicit History(const Plan& plan) {
-    for (const PlannedHistory& kept : plan.histories) lines_[kept.from].reach = kept.frames;
+  /// `frames_in_flight`: how far frames may run ahead of the last call of advance().
+  History(const Plan& plan, int frames_in_flight) {
+    for (const PlannedHistory& kept : plan.histories) {
+      Line& line = lines_.emplace_back(Line{kept.frames, {}});
+      line.items.reserve(std::min<std::size_t>(static_cast<std::size_t>(kept.frames) + static_cast<std::size_t>(frames_in_flight),
+                                               kMostReserved));
+    }
   }
-  /// Nothing when that frame was not computed, failed, or is too long ago.
-  Item find(const Endpoint& from, std::int64_t frame) const {
-    const auto line = lines_.find(from);
-    if (line == lines_.end()) return {};
-    const auto item = line->second.items.find(frame);
-    return item == line->second.items.end() ? Item() : item->second;
+  /// Nothing when that frame is not part of the run, failed, or is too long ago.
+  Item find(int line, std::int64_t frame) const {
+    const Items& items = lines_[static_cast<std::size_t>(line)].items;
+    const auto place = std::ranges::lower_bound(items, frame, {}, &Kept::first);
+    return place != items.end() && place->first == frame ? place->second : Item();
   }
-  void add(const Endpoint& from, std::int64_t frame, Item item) { lines_[from].items.insert_or_assign(frame, std::move(item)); }
-  /// Lets go of what the frame after `frame` cannot reach.
+  /// Frames may come in any order, each once.
+  void add(int line, std::int64_t frame, Item item) {
+    Items& items = lines_[static_cast<std::size_t>(line)].items;
+    items.insert(std::ranges::lower_bound(items, frame, {}, &Kept::first), {frame, std::move(item)});
+  }
+  /// Lets go of what frames after `frame` cannot reach.
   void advance(std::int64_t frame) {
-    for (auto& [from, line] : lines_)
-      std::erase_if(line.items,
-                    [&, reach = line.reach](const auto& kept) { return kept.first + reach <= frame || kept.first > frame; });
+    for (Line& line : lines_) std::erase_if(line.items, [&](const Kept& kept) { return kept.first + line.reach <= frame; });
+  }
+  /// Lets go of `frame` and all after it, which will be computed again, or were not finished.
+  void forget_from(std::int64_t frame) {
+    for (Line& line : lines_) std::erase_if(line.items, [&](const Kept& kept) { return kept.first >= frame; });
   }
 
  private:
+  static constexpr std::size_t kMostReserved = 64;
+  using Kept = std::pair<std::int64_t, Item>;
+  using Items = std::vector<Kept>;  // ascending
   struct Line {
-    int reach = 0;
-    std::map<std::int64_t, Item> items;  // by frame
+    int reach;
+    Items items;
   };
-  std::map<Endpoint, Line> lines_;
+  std::vector<Line> lines_;
 };
 
 }  // namespace quell

@@ -1,45 +1,68 @@
-// Reads a frame's inputs from a source: what the plan uses, cleaned of NaN and infinity, with what looks ahead kept for later.
+// Reads what frames need from a source: what the plan uses, cleaned of NaN and infinity, each image once, although a frame may
+// look ahead at the inputs of later ones.
 #pragma once
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "quell/graph/plan.h"
 #include "quell/image/stream.h"
-#include "quell/runtime/executor.h"
-#include "quell/runtime/sanitize.h"
+#include "quell/runtime/lane.h"
+#include "quell/runtime/session.h"
 
 namespace quell {
 
+/// Keeps account of what is wanted, being read, and there. Only read() takes long, and needs no lock; all else wants one.
 class InputReader {
  public:
-  InputReader(FrameSource& source, const std::vector<std::int64_t>& frames, Executor& executor, BufferPool& pool)
-      : source_(source), frames_(frames.begin(), frames.end()), executor_(executor), pool_(pool) {}
-
-  /// One item for each graph input; nothing for those that the plan does not use. What was replaced is added to `replaced`.
-  /// Throws what the source throws.
-  std::vector<Item> read(std::int64_t frame, const Plan& plan, std::vector<ReplacedValues>& replaced);
-  /// A frame that lies ahead; nothing when it is not part of the run or cannot be read, which its own turn will report.
-  Item read_ahead(std::size_t input, std::int64_t frame, const Plan& plan);
-  /// Lets go of what was read ahead up to this frame.
-  void advance(std::int64_t frame);
-
- private:
+  /// One input in one frame.
+  struct Key {
+    std::int64_t frame = 0;
+    std::size_t input = 0;
+    auto operator<=>(const Key&) const = default;
+  };
   struct Read {
     Item item;
     std::int64_t replaced = 0;  ///< values that were NaN or infinite
+    std::string error;          ///< why there is no item
+    double seconds = 0;
   };
-  Read read_one(const std::string& name, std::int64_t frame);
+  InputReader(const Graph& graph, FrameSource& source, const std::vector<std::int64_t>& frames, BufferPool& pool, Trace* trace)
+      : graph_(graph), source_(source), frames_(frames.begin(), frames.end()), pool_(pool), trace_(trace) {}
 
+  /// From now on next() names what the frame needs and nobody has asked for yet.
+  void want(std::int64_t frame, const PlanState& state);
+  bool has_next() const { return !queue_.empty(); }
+  /// What to read next: the earliest frame first.
+  std::optional<Key> next();
+  /// Reads it; never throws. `executor` cleans large images in parallel.
+  Read read(const Key& key, Executor& executor) const;
+  void put(const Key& key, Read read) { known_[key] = std::move(read); }
+  /// Whether all that the frame wants has been put.
+  bool is_ready(std::int64_t frame, const PlanState& state) const;
+  /// Why a frame that is ready cannot be computed: the error of its first input that could not be read; "" when there is none.
+  std::string error(std::int64_t frame) const;
+  /// `planned`, with the shapes of what the frame has in their place.
+  InputShapes shapes(std::int64_t frame, InputShapes planned) const;
+  /// Hands over a frame that is ready, and tells its report what was read. Frames are taken in order: what is kept of this one
+  /// and earlier ones is let go.
+  FrameInputs take(FrameReport& report, const PlanState& state);
+
+ private:
+  const Read* find(std::int64_t frame, std::size_t input) const;
+  std::vector<Key> keys(std::int64_t frame, const PlanState& state) const;
+
+  const Graph& graph_;
   FrameSource& source_;
   std::set<std::int64_t> frames_;
-  Executor& executor_;
   BufferPool& pool_;
-  std::map<std::pair<std::size_t, std::int64_t>, Read> ahead_;  // by input and frame
+  Trace* trace_;
+  std::set<Key> queue_;                       // wanted, and not yet being read
+  std::map<Key, std::optional<Read>> known_;  // wanted; nothing until it has been read
 };
 
 }  // namespace quell

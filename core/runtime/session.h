@@ -48,6 +48,8 @@ struct SessionOptions {
   Trace* trace = nullptr;                                 ///< told what ran when; may be null
 };
 
+struct SessionState;
+
 /// Not thread-safe. History lasts as long as the session, and starts anew when the size of the images changes.
 class Session {
  public:
@@ -55,9 +57,11 @@ class Session {
   ~Session();
   Session(Session&&) noexcept;
 
-  /// Computes the frames in the order given. A frame that cannot be read, computed or written is reported and harms no other;
-  /// where it was not computed, its history counts as absent for those that follow. Returns a report for each frame, or fewer
-  /// when cancelled. Throws Error(usage) when the graph cannot run on what the source has.
+  /// Computes the frames, whose numbers ascend. A frame that cannot be read, computed or written is reported and harms no other:
+  /// what its nodes yielded is history for those that follow, what a failed node, or one that needs it, should have yielded
+  /// counts as absent. Returns a report for each frame, in order, or fewer when cancelled or stopped. Throws Error(usage) when
+  /// the graph cannot run on what the source has or the numbers do not ascend, Error(memory) when not even one frame fits the
+  /// limit.
   std::vector<FrameReport> run(const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink);
 
   /// In memory: computes one frame from its inputs by name, and returns the outputs and dumps by name. Throws Error(usage) when
@@ -70,8 +74,7 @@ class Session {
   BufferPool& pool();
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<SessionState> state_;
 };
 
 }  // namespace quell

@@ -11,12 +11,15 @@ namespace quell {
 /// Bytes that this process may have: the machine's memory, or less where a control group says so.
 std::size_t available_memory();
 
+/// Scratch memory of all threads together for one run of a node; `step` is a position in Plan::nodes.
+std::size_t slot_scratch(const Plan& plan, std::size_t step, int threads);
+
 struct Window {
   int frames = 1;                   ///< most frames in flight, from reading to writing
   std::size_t memory = 0;           ///< most bytes that the pool may hold
   std::size_t bytes_per_frame = 0;  ///< what each frame in flight is charged
   std::size_t fixed_bytes = 0;      ///< history and constants, whatever the number of frames
-  std::string reason;               ///< what decided: "asked for", "2 threads", "memory", "a loop of 1 frame"
+  std::string reason;               ///< what decided: "as asked for", "2 threads", "what the memory limit has room for"
 };
 
 /// `frames` and `memory` as in SessionOptions, `threads` the actual number. Throws Error(memory) when not even one frame fits.

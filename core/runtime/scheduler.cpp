@@ -1,0 +1,301 @@
+#include "quell/runtime/scheduler.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "quell/runtime/failure.h"
+
+namespace quell {
+namespace {
+
+using namespace std::chrono_literals;
+constexpr auto kBetweenQuestions = 5ms;  // how often the caller is asked whether the run is cancelled
+constexpr int kMostFileThreads = 17;     // beyond it, drives and memory are what is waited for
+
+// One more than threads, so that one may wait for a drive while the others have work.
+int file_threads(std::uint32_t threads) { return std::min(static_cast<int>(threads) + 1, kMostFileThreads); }
+
+}  // namespace
+
+Scheduler::Scheduler(SessionState& session, const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink)
+    : session_(session),
+      frames_(frames),
+      source_(source),
+      sink_(sink),
+      reader_(*session.graph, source, frames, session.pool, session.options.trace),
+      flight_(frames),
+      end_(frames.size()) {
+  flight_.use(*session.running, session.window, static_cast<int>(session.executor.slots()));
+  in_flight_.resize(flight_.places());
+}
+
+std::vector<FrameReport> Scheduler::run() {
+  session_.executor.budget().on_free([this] {
+    const Lock lock(mutex_);
+    start_drivers(flight_.ready());
+  });
+  for (int i = 0; i < file_threads(session_.executor.slots()); ++i) file_threads_.emplace_back([this] { serve_files(); });
+  try {
+    Lock lock(mutex_);
+    advance();
+    wait_until_finished(lock);
+    collect_rest();
+    tell_reports(lock);
+  } catch (...) {  // from the session's callbacks
+    shut_down();
+    throw;
+  }
+  shut_down();
+  return std::move(reports_);
+}
+
+// ---- the caller ----
+
+void Scheduler::wait_until_finished(Lock& lock) {
+  while (!is_finished()) {
+    const auto is_awaited = [&] { return is_finished() || told_ < reports_.size(); };
+    if (!session_.options.cancelled) {
+      caller_wakes_.wait(lock, is_awaited);
+    } else if (!caller_wakes_.wait_for(lock, kBetweenQuestions, is_awaited)) {
+      lock.unlock();
+      const bool cancelled = session_.cancelled();
+      lock.lock();
+      stopped_ = stopped_ || cancelled;
+    }
+    tell_reports(lock);
+  }
+}
+
+void Scheduler::tell_reports(Lock& lock) {
+  while (told_ < reports_.size()) {
+    const FrameReport report = reports_[told_++];  // a copy: more may be added meanwhile
+    if (!session_.options.on_frame) continue;
+    lock.unlock();
+    session_.options.on_frame(report);
+    lock.lock();
+  }
+}
+
+bool Scheduler::is_finished() const {
+  if (drivers_ > 0 || busy_file_threads_ > 0) return false;
+  return stopped_ || flight_.retired() >= end_;
+}
+
+void Scheduler::shut_down() {
+  {
+    Lock lock(mutex_);
+    stopped_ = closing_ = true;
+    caller_wakes_.wait(lock, [&] { return drivers_ == 0 && busy_file_threads_ == 0; });
+  }
+  files_wake_.notify_all();
+  file_threads_.clear();
+  session_.executor.budget().on_free({});
+}
+
+// Of a run that was cut short, frames that were written before an earlier one count, too. What others left is void.
+void Scheduler::collect_rest() {
+  stopped_ = true;
+  for (std::size_t index = flight_.retired(); index < std::min(flight_.admitted(), end_); ++index)
+    if (frame(index).phase == Phase::ended) reports_.push_back(std::move(frame(index).report));
+  for (std::size_t index = flight_.retired(); index < flight_.admitted(); ++index) lane(index).clear();
+  if (flight_.retired() < frames_.size()) session_.running->history.forget_from(frames_[flight_.retired()]);
+}
+
+// ---- drivers ----
+
+// A driver that will look for the next node itself is counted by its caller.
+void Scheduler::start_drivers(std::size_t nodes) {
+  while (!stopped_ && idle_drivers_ < nodes && session_.executor.budget().try_take(true)) {
+    ++idle_drivers_, ++drivers_;
+    session_.executor.spawn(drive_);
+  }
+}
+
+void Scheduler::drive() {
+  ThreadBudget& budget = session_.executor.budget();
+  Lock lock(mutex_);
+  --idle_drivers_;
+  while (!stopped_ && !budget.is_wanted()) {
+    const std::optional<FrameStep> node = flight_.take();
+    if (!node) break;
+    compute(*node, lock);
+    if (flight_.ready() > 1) start_drivers(flight_.ready() - 1);
+  }
+  if (budget.is_wanted()) start_drivers(flight_.ready());  // which will be told when there is room again
+  lock.unlock();
+  budget.give_back();
+  lock.lock();
+  --drivers_;
+  if (drivers_ == 0) caller_wakes_.notify_all();
+}
+
+void Scheduler::compute(const FrameStep& node, Lock& lock) {
+  Lane& at = lane(node.index);
+  if (node.index >= end_ || at.is_lost(node.step)) {
+    at.skip(node.step);
+  } else {
+    at.fetch(node.step);
+    lock.unlock();
+    bool cancelled = false;
+    try {
+      at.run(node.step);
+    } catch (const Cancelled&) { cancelled = true; }
+    lock.lock();
+    if (cancelled) {
+      stopped_ = true;
+      return;
+    }
+    at.publish(node.step);
+  }
+  if (!flight_.complete(node)) return;
+  end_computation(node.index);
+  advance();
+}
+
+// ---- file threads ----
+
+void Scheduler::serve_files() {
+  Lock lock(mutex_);
+  while (true) {
+    files_wake_.wait(lock, [&] { return closing_ || can_read() || next_write(); });
+    if (closing_) return;
+    ++busy_file_threads_;
+    if (const auto index = next_write())  // first, because it makes room
+      write_one(*index, lock);
+    else
+      read_one(lock);
+    --busy_file_threads_;
+    advance();
+  }
+}
+
+bool Scheduler::can_read() { return !stopped_ && reader_.has_next(); }
+
+std::optional<std::size_t> Scheduler::next_write() {
+  if (stopped_) return std::nullopt;
+  for (std::size_t index = flight_.retired(); index < std::min(flight_.begun(), end_); ++index) {
+    if (frame(index).phase == Phase::computed) return index;
+    if (session_.options.stop_on_error) break;  // an earlier one may still fail
+  }
+  return std::nullopt;
+}
+
+void Scheduler::read_one(Lock& lock) {
+  const InputReader::Key key = *reader_.next();
+  lock.unlock();
+  const bool counts = source_.uses_processor();
+  if (counts) session_.executor.budget().take();
+  InputReader::Read read = reader_.read(key, alone_);
+  if (counts) session_.executor.budget().give_back();
+  lock.lock();
+  reader_.put(key, std::move(read));
+}
+
+void Scheduler::write_one(std::size_t index, Lock& lock) {
+  Frame& written = frame(index);
+  Lane& at = lane(index);
+  written.phase = Phase::writing;
+  lock.unlock();
+  const bool counts = sink_.uses_processor();
+  if (counts) session_.executor.budget().take();
+  write_results(written.report, at, session_.running->wiring, sink_, session_.pool, session_.options.trace);
+  if (counts) session_.executor.budget().give_back();
+  lock.lock();
+  end_frame(index);
+}
+
+// ---- what an event makes possible ----
+
+void Scheduler::advance() {
+  while (retire_next() || admit_next() || begin_next()) {}
+  start_drivers(flight_.ready());
+  if (can_read() || next_write()) files_wake_.notify_all();
+  if (is_finished() || told_ < reports_.size()) caller_wakes_.notify_all();
+}
+
+bool Scheduler::admit_next() {
+  if (stopped_ || flight_.admitted() >= end_ || !flight_.may_admit()) return false;
+  const std::size_t index = flight_.admitted();
+  flight_.admit();
+  frame(index) = {Phase::reading, {}, Trace::Clock::now()};
+  frame(index).report.frame = frames_[index];
+  reader_.want(frames_[index], *session_.running);
+  return true;
+}
+
+bool Scheduler::begin_next() {
+  const std::size_t index = flight_.begun();
+  if (stopped_ || index >= std::min(flight_.admitted(), end_) || !reader_.is_ready(frames_[index], *session_.running))
+    return false;
+  FrameReport& report = frame(index).report;
+  report.error = reader_.error(frames_[index]);
+  if (report.error.empty()) {
+    const InputShapes shapes = reader_.shapes(frames_[index], session_.planned_for);
+    if (session_.needs_plan(shapes)) {
+      if (flight_.retired() < index) return false;  // frames of the former size must be through
+      if (plan_anew(shapes)) return true;
+    }
+  }
+  FrameReport& told = frame(index).report;  // which another plan may have moved
+  told.ok = told.error.empty();
+  FrameInputs inputs = reader_.take(told, *session_.running);
+  if (told.ok) lane(index).begin(frames_[index], std::move(inputs));
+  flight_.begin(told.ok);
+  frame(index).phase = Phase::computing;
+  if (!told.ok)
+    end_frame(index);
+  else if (session_.running->wiring.steps.empty())
+    end_computation(index);
+  return true;
+}
+
+// True when it succeeded; the frame, which the new plan may want more of, has not begun yet.
+bool Scheduler::plan_anew(const InputShapes& shapes) {
+  const std::size_t first = flight_.begun();
+  try {
+    session_.plan_for(shapes);
+  } catch (...) {
+    frame(first).report.error = what_failed(session_.pool);
+    return false;
+  }
+  std::vector<Frame> moved;
+  for (std::size_t index = first; index < flight_.admitted(); ++index) moved.push_back(std::move(frame(index)));
+  flight_.use(*session_.running, session_.window, static_cast<int>(session_.executor.slots()));
+  in_flight_.clear();
+  in_flight_.resize(flight_.places());
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    frame(first + i) = std::move(moved[i]);
+    reader_.want(frames_[first + i], *session_.running);
+  }
+  return true;
+}
+
+void Scheduler::end_computation(std::size_t index) {
+  frame(index).phase = Phase::computed;
+  report_nodes(frame(index).report, lane(index));
+  if (frame(index).report.ok)
+    flight_.hold(index, true);
+  else
+    end_frame(index);
+}
+
+void Scheduler::end_frame(std::size_t index) {
+  Frame& ended = frame(index);
+  ended.phase = Phase::ended;
+  ended.report.seconds = std::chrono::duration<double>(Trace::Clock::now() - ended.start).count();
+  if (!ended.report.ok && session_.options.stop_on_error) end_ = std::min(end_, index + 1);
+  lane(index).clear();
+  flight_.hold(index, false);
+}
+
+bool Scheduler::retire_next() {
+  const std::size_t index = flight_.retired();
+  if (index >= std::min(flight_.begun(), end_) || frame(index).phase != Phase::ended) return false;
+  session_.running->history.advance(frames_[index]);
+  reports_.push_back(std::move(frame(index).report));
+  flight_.retire();
+  return true;
+}
+
+}  // namespace quell

@@ -1,0 +1,90 @@
+#include "quell/runtime/serial_run.h"
+
+#include <utility>
+
+#include "quell/runtime/failure.h"
+#include "quell/runtime/input_reader.h"
+
+namespace quell {
+namespace {
+
+class SerialRun {
+ public:
+  SerialRun(SessionState& session, const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink)
+      : session_(session), reader_(*session.graph, source, frames, session.pool, session.options.trace), sink_(sink) {}
+
+  FrameReport run(std::int64_t frame) {
+    FrameReport report;
+    report.frame = frame;
+    const auto start = Trace::Clock::now();
+    try {
+      read(frame);
+      report.error = reader_.error(frame);
+    } catch (...) { report.error = what_failed(session_.pool); }
+    report.ok = report.error.empty();
+    FrameInputs inputs = reader_.take(report, *session_.running);
+    if (report.ok) compute(report, std::move(inputs));
+    session_.running->history.advance(frame);
+    report.seconds = std::chrono::duration<double>(Trace::Clock::now() - start).count();
+    return report;
+  }
+
+ private:
+  void read(std::int64_t frame) {
+    while (true) {
+      reader_.want(frame, *session_.running);
+      while (const auto key = reader_.next()) reader_.put(*key, reader_.read(*key, session_.executor));
+      const InputShapes shapes = reader_.shapes(frame, session_.planned_for);
+      if (!reader_.error(frame).empty() || !session_.needs_plan(shapes)) return;
+      session_.plan_for(shapes);  // which may use other inputs, too
+    }
+  }
+
+  void compute(FrameReport& report, FrameInputs inputs) {
+    Lane& lane = session_.lane(0);
+    lane.begin(report.frame, std::move(inputs));
+    compute_steps(lane, *session_.running);
+    report_nodes(report, lane);
+    if (report.ok) write_results(report, lane, session_.running->wiring, sink_, session_.pool, session_.options.trace);
+    lane.clear();
+  }
+
+  SessionState& session_;
+  InputReader reader_;
+  FrameSink& sink_;
+};
+
+}  // namespace
+
+void compute_steps(Lane& lane, const PlanState& state) {
+  for (int step = 0; step < static_cast<int>(state.wiring.steps.size()); ++step) {
+    if (lane.is_lost(step)) {
+      lane.skip(step);
+      continue;
+    }
+    lane.fetch(step);
+    lane.run(step);
+    lane.publish(step);
+  }
+}
+
+std::vector<FrameReport> run_serially(SessionState& session, const std::vector<std::int64_t>& frames, FrameSource& source,
+                                      FrameSink& sink) {
+  SerialRun serial(session, frames, source, sink);
+  std::vector<FrameReport> reports;
+  for (const std::int64_t frame : frames) {
+    if (session.cancelled()) break;
+    try {
+      reports.push_back(serial.run(frame));
+    } catch (const Cancelled&) {
+      session.lane(0).clear();
+      session.running->history.forget_from(frame);
+      break;
+    }
+    if (session.options.on_frame) session.options.on_frame(reports.back());
+    if (session.options.stop_on_error && !reports.back().ok) break;
+  }
+  return reports;
+}
+
+}  // namespace quell

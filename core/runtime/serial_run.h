@@ -1,0 +1,18 @@
+// One frame after the other, one node after the other: the reference for every other way of running.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "quell/runtime/session_state.h"
+
+namespace quell {
+
+/// As Session::run, for frames that ascend, when a first plan has been made.
+std::vector<FrameReport> run_serially(SessionState& session, const std::vector<std::int64_t>& frames, FrameSource& source,
+                                      FrameSink& sink);
+
+/// Runs every step of a frame that has begun. Throws Cancelled.
+void compute_steps(Lane& lane, const PlanState& state);
+
+}  // namespace quell
