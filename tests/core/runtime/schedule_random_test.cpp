@@ -1,0 +1,105 @@
+// Random graphs over random frames: what comes out is what the graph's definition says, and the same bits under every schedule.
+#include <gtest/gtest.h>
+
+#include "tests/core/runtime/schedule_naive.h"
+
+namespace quell::test {
+namespace {
+
+#ifdef __SANITIZE_THREAD__
+constexpr int kBlocks = 4;
+#else
+constexpr int kBlocks = 8;
+#endif
+constexpr unsigned kGraphs = 200, kGraphsPerBlock = 25, kSettingsPerGraph = 4;
+
+struct Case {
+  Scene scene;
+  TestGraph graph;
+};
+
+Case draw_case(unsigned seed) {
+  Dice dice(seed + 1000);
+  Scene scene = random_scene(dice);
+  TestGraph graph = random_graph(seed, scene.frames);
+  return {std::move(scene), std::move(graph)};
+}
+
+SessionOptions with_dumps(SessionOptions options, const TestGraph& graph) {
+  for (const Place& dump : graph.dumps) options.dumps.push_back(graph.name(dump));
+  return options;
+}
+
+std::vector<std::string> names(const Graph& graph) {
+  std::vector<std::string> list;
+  for (const Node& node : graph.nodes) list.push_back(node.name);
+  return list;
+}
+
+class RandomGraphs : public testing::TestWithParam<int> {};
+
+TEST_P(RandomGraphs, YieldWhatTheirDefinitionSaysUnderEverySchedule) {
+  for (unsigned i = 0; i < kGraphsPerBlock; ++i) {
+    const unsigned seed = static_cast<unsigned>(GetParam()) * kGraphsPerBlock + i;
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const auto [scene, graph] = draw_case(seed);
+    const auto checked = load(graph);
+    const Outcome want = run(checked, graph.inputs, scene, with_dumps(serial(), graph));
+    expect_same(without_words(want), compute_naively(graph, scene, names(*checked)));
+    for (unsigned k = 0; k < kSettingsPerGraph; ++k) {
+      const Setting chosen = setting(static_cast<int>((seed + 5 * k) % kSettings));
+      SCOPED_TRACE(describe(chosen));
+      expect_same(run(checked, graph.inputs, scene, with_dumps(concurrent(chosen), graph)), want);
+    }
+    if (HasFailure()) {
+      ADD_FAILURE() << to_json(graph, testing::TempDir());
+      return;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Block, RandomGraphs, testing::Range(0, kBlocks));
+
+// The graphs must be of a kind that tries what is tested.
+TEST(RandomGraphsOfTheTest, HaveEverythingOften) {
+  std::map<std::string, int> counts;
+  for (unsigned seed = 0; seed < kGraphs; ++seed) {
+    const auto [scene, graph] = draw_case(seed);
+    const auto checked = load(graph);
+    const Outcome outcome = compute_naively(graph, scene, names(*checked));
+    PatternSource source(graph.inputs, scene);
+    InputShapes shapes;
+    for (const GraphInput& input : checked->inputs) shapes[input.name] = source.shape(input.name);
+    const Plan plan = make_plan(checked, shapes);
+    counts["graphs of which five nodes or more run"] += plan.nodes.size() >= 5;
+    counts["loops"] += static_cast<int>(plan.loops.size());
+    for (const PlannedNode& planned : plan.nodes)
+      for (const int input : planned.in_place_of) counts["written in place"] += input >= 0;
+    counts["dumps"] += !graph.dumps.empty();
+    counts["subgraphs"] += graph.groups > 0;
+    counts["odd sizes"] += !scene.odd.empty();
+    for (const FrameReport& report : outcome.reports) {
+      counts["good frames"] += report.ok;
+      counts["frames with a node that fails"] += !report.node.empty();
+      counts["frames that cannot be read or written"] += !report.ok && report.node.empty();
+    }
+    for (int index = 0; index < static_cast<int>(graph.nodes.size()); ++index) {
+      const TestNode& node = graph.nodes[static_cast<std::size_t>(index)];
+      counts["pruned nodes"] += !graph.present({index});
+      for (const Wire& wire : wires(node)) {
+        counts["back edges"] += wire.delay > 0 && wire.from.node >= index;
+        counts["ahead"] += wire.delay < 0;
+        counts["never there"] += !graph.present(wire.from);
+        counts["initial values of the same frame"] += wire.delay != 0 && wire.start == Wire::Start::place;
+      }
+    }
+  }
+  EXPECT_EQ(counts.size(), 14U);
+  for (const auto& [what, count] : counts) {
+    RecordProperty(what, count);
+    EXPECT_GE(count, 25) << what;
+  }
+}
+
+}  // namespace
+}  // namespace quell::test
