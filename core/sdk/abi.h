@@ -181,7 +181,8 @@ struct quell_host {
   void* context;  // the host's own
   // Cuts [begin, end) into chunks of `grain` (the last may be shorter) and calls fn once for each, on any thread. Chunks depend
   // on the arguments alone, never on the number of threads. `slot` is below quell_exec::slot_count and is not used by two
-  // calls at a time. A nested call runs inline. All chunks run; the status is that of the lowest chunk that failed.
+  // calls at a time. A nested call runs inline. All chunks run, and the status is that of the lowest chunk that failed; when
+  // the run is cancelled, the chunks that have not begun are left out, and the status is QUELL_CANCELLED.
   quell_status (*parallel_for)(const quell_host*, int64_t begin, int64_t end, int64_t grain, quell_chunk_fn fn, void* context);
   void (*log)(const quell_host*, int level, const char* message);
   int (*cancelled)(const quell_host*);                        // non-zero: return QUELL_CANCELLED soon

@@ -2,8 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <mutex>
+#include <set>
+#include <sstream>
 #include <stdexcept>
+#include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -79,6 +85,101 @@ TEST_F(HostTest, PassesMessagesOnAndForgetsAnErrorOnceTaken) {
   EXPECT_EQ(host.take_error(), "no");
   EXPECT_EQ(host.take_error(), "");
   EXPECT_EQ(host.raw().cancelled(&host.raw()), 0);
+}
+
+TEST_F(HostTest, LeavesOutTheRestOfALoopOnceCancelled) {
+  executor = make_executor(1);
+  services.executor = executor.get();
+  int chunks = 0;
+  services.cancelled = [&] { return chunks == 4; };
+  const quell_chunk_fn count = [](void* context, std::int64_t, std::int64_t, std::int64_t, std::uint32_t) -> quell_status {
+    ++*static_cast<int*>(context);
+    return QUELL_FAILED;
+  };
+  Host host(services);
+  EXPECT_EQ(host.raw().parallel_for(&host.raw(), 0, 100, 1, count, &chunks), QUELL_CANCELLED);
+  EXPECT_EQ(chunks, 4);
+  EXPECT_TRUE(host.was_cancelled());
+  chunks = 0;
+  EXPECT_EQ(host.raw().parallel_for(&host.raw(), 0, 100, 1, count, &chunks), QUELL_CANCELLED);
+  EXPECT_EQ(chunks, 0) << "who was told so once is told so until the next frame";
+  host.begin(2);
+  EXPECT_FALSE(host.was_cancelled());
+  services.cancelled = {};
+  EXPECT_EQ(host.raw().parallel_for(&host.raw(), 0, 100, 1, count, &chunks), QUELL_FAILED);
+  EXPECT_EQ(chunks, 100);
+}
+
+TEST_F(HostTest, StopsAnExceptionOfWhoIsAskedForCancellation) {
+  services.cancelled = []() -> bool { throw std::runtime_error("from the caller"); };
+  const Host host(services);
+  Chunks chunks;
+  EXPECT_EQ(host.raw().parallel_for(&host.raw(), 0, 10, 1, record, &chunks), QUELL_FAILED);
+}
+
+// The threads that ran a chunk, each of which waits for a second thread to come.
+struct Crew {
+  std::mutex mutex;
+  std::set<std::thread::id> members;
+  std::size_t chunks = 0;
+
+  static quell_status work(void* context, std::int64_t, std::int64_t, std::int64_t, std::uint32_t) {
+    Crew& crew = *static_cast<Crew*>(context);
+    const auto enter = [&] {
+      const std::scoped_lock lock(crew.mutex);
+      crew.members.insert(std::this_thread::get_id());
+      return crew.members.size();
+    };
+    while (enter() < 2) std::this_thread::yield();
+    const std::scoped_lock lock(crew.mutex);
+    ++crew.chunks;
+    return QUELL_OK;
+  }
+};
+
+std::size_t count(const std::string& text, const std::string& word) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++found;
+  return found;
+}
+
+TEST_F(HostTest, TracesEachThreadThatHelpsInALoopOnce) {
+  std::ostringstream text;
+  Trace trace(text);
+  services.trace = &trace;
+  Host host(services, "smooth");
+  host.begin(12);
+  Crew crew;
+  EXPECT_EQ(host.raw().parallel_for(&host.raw(), 0, 200, 1, Crew::work, &crew), QUELL_OK);
+  trace.finish();
+  EXPECT_EQ(crew.chunks, 200U);
+  EXPECT_TRUE(crew.members.contains(std::this_thread::get_id()));
+  EXPECT_EQ(count(text.str(), R"("cat":"help","name":"smooth","args":{"frame":12})"), crew.members.size() - 1) << text.str();
+}
+
+TEST_F(HostTest, RunsEveryChunkOnceWhenTracedThoughHelpersAreCalledAway) {
+  std::ostringstream text;
+  Trace trace(text);
+  services.trace = &trace;
+  Host host(services);
+  std::atomic<bool> stop = false;
+  const std::jthread reader([&] {
+    while (!stop) {
+      executor->budget().take();
+      executor->budget().give_back();
+    }
+  });
+  for (int round = 0; round < 50; ++round) {
+    std::vector<std::atomic<int>> runs(300);
+    const quell_chunk_fn mark = [](void* context, std::int64_t chunk, std::int64_t, std::int64_t, std::uint32_t) -> quell_status {
+      ++(*static_cast<std::vector<std::atomic<int>>*>(context))[static_cast<std::size_t>(chunk)];
+      std::this_thread::yield();
+      return QUELL_OK;
+    };
+    EXPECT_EQ(host.raw().parallel_for(&host.raw(), 0, 300, 1, mark, &runs), QUELL_OK);
+    EXPECT_TRUE(std::ranges::all_of(runs, [](const auto& times) { return times == 1; }));
+  }
+  stop = true;
 }
 
 }  // namespace
