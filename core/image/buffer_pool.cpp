@@ -34,7 +34,7 @@ struct Buffer::Block {
   std::size_t bytes = 0;
   void* data = nullptr;
   Block* next = nullptr;                     // of the idle blocks of this size
-  std::shared_ptr<BufferPool::State> state;  // set while somebody holds the block
+  std::shared_ptr<BufferPool::State> state;  // set while somebody holds the block; null without a pool
 
   explicit Block(std::size_t size) : bytes(size), data(::operator new(size, kAlignment)) {}
   ~Block() { ::operator delete(data, kAlignment); }
@@ -108,8 +108,12 @@ Buffer& Buffer::operator=(Buffer other) noexcept {
 Buffer::~Buffer() {
   if (!block_ || block_->holders.fetch_sub(1, std::memory_order_acq_rel) != 1) return;
   const std::shared_ptr<BufferPool::State> state = std::move(block_->state);
-  state->take_back(block_);
+  if (state)
+    state->take_back(block_);
+  else
+    delete block_;
 }
+Buffer Buffer::allocate(std::size_t bytes) { return Buffer(new Block(bytes)); }
 void* Buffer::data() const { return block_->data; }
 std::size_t Buffer::bytes() const { return block_->bytes; }
 bool Buffer::unique() const { return block_->holders.load(std::memory_order_acquire) == 1; }

@@ -11,11 +11,13 @@ namespace quell {
 
 class BufferPool;
 
-/// A block of pixels shared by whoever holds it; it returns to its pool when the last holder lets go. Holding one more costs no
-/// allocation. Copies may be made and dropped on any thread.
+/// A block of pixels shared by whoever holds it; it returns to its pool, if it has one, when the last holder lets go. Holding one
+/// more costs no allocation. Copies may be made and dropped on any thread.
 class Buffer {
  public:
   Buffer() = default;
+  /// A block that belongs to no pool, 64-byte aligned, content unspecified. Throws std::bad_alloc.
+  static Buffer allocate(std::size_t bytes);
   Buffer(const Buffer& other);
   Buffer(Buffer&& other) noexcept;
   Buffer& operator=(Buffer other) noexcept;

@@ -1,6 +1,5 @@
 #include "quell/image/item.h"
 
-#include <algorithm>
 #include <cassert>
 
 namespace quell {
@@ -19,6 +18,28 @@ CameraRecord::CameraRecord(Camera camera) : camera_(std::move(camera)) {
   raw_.object_count = static_cast<std::uint32_t>(ids_.size());
   raw_.object_ids = ids_.data();
   raw_.object_to_world = matrices_.data();
+}
+
+Values::Values(std::span<const double> values) : count_(values.size()) {
+  if (count_ == 0) return;
+  buffer_ = Buffer::allocate(values.size_bytes());
+  std::ranges::copy(values, writable().begin());
+}
+
+Values::Values(std::size_t count, BufferPool& pool) : count_(count) {
+  if (count_ == 0) return;
+  buffer_ = pool.acquire(count * sizeof(double));
+  std::ranges::fill(writable(), 0.0);
+}
+
+Values Values::first(std::size_t count) const {
+  Values shorter = *this;
+  shorter.count_ = std::min(count, count_);
+  return shorter;
+}
+
+quell_values Values::raw() const {
+  return {sizeof(quell_values), static_cast<std::uint32_t>(count_), const_cast<double*>(data())};  // NOLINT: read-only for inputs
 }
 
 PortType Item::type() const {

@@ -1,10 +1,14 @@
 // What flows along an edge in one frame: an image, a camera, values, or nothing.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <map>
 #include <memory>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -40,31 +44,60 @@ class CameraRecord {
   quell_camera raw_{};
 };
 
-using Values = std::vector<double>;
+/// A list of numbers. Copies share them: treat a list that has been handed on as read-only. Making one takes memory, copying and
+/// dropping never does.
+class Values {
+ public:
+  using value_type = double;
+  using iterator = const double*;
+  using const_iterator = const double*;
 
-/// Copies are cheap and share what they hold; what an item holds is not changed any more.
+  Values() = default;
+  Values(std::initializer_list<double> values) : Values(std::span<const double>(values.begin(), values.size())) {}
+  explicit Values(std::span<const double> values);
+  /// Zeros, in memory of the pool.
+  Values(std::size_t count, BufferPool& pool);
+
+  std::size_t size() const { return count_; }
+  const double* data() const { return count_ > 0 ? static_cast<const double*>(buffer_.data()) : nullptr; }
+  const double* begin() const { return data(); }
+  const double* end() const { return data() + count_; }
+  double operator[](std::size_t i) const { return data()[i]; }
+  bool operator==(const Values& other) const { return std::ranges::equal(*this, other); }
+
+  /// The same numbers without those from `count` on.
+  Values first(std::size_t count) const;
+  const Buffer& buffer() const { return buffer_; }
+  std::span<double> writable() { return {const_cast<double*>(data()), count_}; }
+  /// What crosses the plugin interface; it points at these numbers.
+  quell_values raw() const;
+
+ private:
+  std::size_t count_ = 0;
+  Buffer buffer_;  // none for an empty list
+};
+
+/// Copies share what they hold, and cost no allocation; what an item holds is not changed any more.
 class Item {
  public:
   Item() = default;
   Item(Image image) : content_(std::move(image)) {}                                           // NOLINT: an image is an item
   Item(Camera camera) : content_(std::make_shared<const CameraRecord>(std::move(camera))) {}  // NOLINT
-  Item(Values values) : content_(std::make_shared<const Values>(std::move(values))) {}        // NOLINT
+  Item(Values values) : content_(std::move(values)) {}                                        // NOLINT
 
   explicit operator bool() const { return !std::holds_alternative<std::monostate>(content_); }
   /// Null when the item holds something else.
   const Image* image() const { return std::get_if<Image>(&content_); }
-  const CameraRecord* camera() const { return get<CameraRecord>(); }
-  const Values* values() const { return get<Values>(); }
+  const CameraRecord* camera() const {
+    const auto* record = std::get_if<std::shared_ptr<const CameraRecord>>(&content_);
+    return record ? record->get() : nullptr;
+  }
+  const Values* values() const { return std::get_if<Values>(&content_); }
   /// Only of an item that is there.
   PortType type() const;
 
  private:
-  template <class T>
-  const T* get() const {
-    const auto* pointer = std::get_if<std::shared_ptr<const T>>(&content_);
-    return pointer ? pointer->get() : nullptr;
-  }
-  std::variant<std::monostate, Image, std::shared_ptr<const CameraRecord>, std::shared_ptr<const Values>> content_;
+  std::variant<std::monostate, Image, std::shared_ptr<const CameraRecord>, Values> content_;
 };
 
 /// What is known of an item before it is computed.

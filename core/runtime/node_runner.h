@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,16 +22,19 @@ struct NodeLayout {
 
 using PortItems = std::vector<std::vector<Item>>;  // items of each port
 
-/// Keeps its tables from frame to frame. One frame at a time; several runners may share a pass.
+/// Keeps its tables from frame to frame, so that after the first frames nothing is allocated. One frame at a time; several
+/// runners may share a pass.
 class NodeRunner {
  public:
-  /// `name` stands in messages.
+  /// `name` stands in messages and in the trace.
   NodeRunner(std::string name, const PassInstance& pass, NodeLayout layout, const HostServices& services, BufferPool& pool);
   ~NodeRunner();
   NodeRunner(NodeRunner&&) noexcept;
 
-  /// Computes `outputs` from `inputs`, whose items are let go. An input that nobody else holds may be overwritten by an output
-  /// planned in place. Throws Error(frame) with the pass's words when it fails, Cancelled when it was cancelled.
+  /// Computes `outputs` from `inputs`, whose items are let go in any case; both keep their tables, and `outputs` is given its own
+  /// when it has none. An input that nobody else holds may be overwritten by an output planned in place. Throws Error(frame) with
+  /// the pass's words when it fails, Cancelled when the pass learned that the run was cancelled, whatever it made of that, and
+  /// what the pool throws when memory runs out; the outputs are then empty.
   void run(std::int64_t frame, PortItems& inputs, PortItems& outputs);
 
  private:

@@ -27,12 +27,14 @@ std::int64_t count_non_finite(const FloatImage& image, Executor& executor) {
   return total;
 }
 
-std::int64_t sanitize_values(Item& item) {
-  Values clean = *item.values();
+std::int64_t sanitize_values(Item& item, BufferPool& pool) {
+  const Values& values = *item.values();
   const auto is_bad = [](double value) { return !is_finite(value); };
-  const std::int64_t count = std::ranges::count_if(clean, is_bad);
-  std::ranges::replace_if(clean, is_bad, 0.0);
-  if (count > 0) item = std::move(clean);
+  const std::int64_t count = std::ranges::count_if(values, is_bad);
+  if (count == 0) return 0;
+  Values clean = values.buffer().unique() ? values : Values(values.size(), pool);
+  std::ranges::replace_copy_if(values, clean.writable().begin(), is_bad, 0.0);
+  item = std::move(clean);
   return count;
 }
 
@@ -45,13 +47,13 @@ std::string describe(const ReplacedValues& replaced) {
 }
 
 std::int64_t sanitize(Item& item, Executor& executor, BufferPool& pool) {
-  if (item.values()) return sanitize_values(item);
+  if (item.values()) return sanitize_values(item, pool);
   const Image* image = item.image();
   if (!image || info(image->type()).format != QUELL_FORMAT_F32) return 0;
   const std::int64_t count = count_non_finite(image->floats(), executor);
   if (count == 0) return 0;
 
-  Image clean(image->type(), image->size(), pool);
+  Image clean = image->buffer().unique() ? *image : Image(image->type(), image->size(), pool);
   const FloatImage in = image->floats();
   const FloatOutput out = clean.writable_floats();
   const float replacement = image->type() == QUELL_TYPE_DEPTH ? QUELL_NO_SURFACE_DEPTH : 0.0F;

@@ -18,8 +18,8 @@ struct ReplacedValues {
 /// "color: 3 values were NaN or infinite and count as 0"
 std::string describe(const ReplacedValues& replaced);
 
-/// Replaces every value that is NaN or infinite: by 0, in depth by the distance of "no surface". Pixels that somebody else holds
-/// are copied first. Returns how many values were replaced; cameras and ids are left alone.
+/// Replaces every value that is NaN or infinite: by 0, in depth by the distance of "no surface". What somebody else holds as well
+/// is copied first. Returns how many values were replaced; cameras and ids are left alone.
 std::int64_t sanitize(Item& item, Executor& executor, BufferPool& pool);
 
 }  // namespace quell

@@ -104,6 +104,35 @@ TEST(Item, KnowsWhatItHolds) {
   EXPECT_EQ(values.image(), nullptr);
 }
 
+TEST(Values, AreSharedByCopies) {
+  BufferPool pool;
+  Values values(3, pool);
+  EXPECT_EQ(values, (Values{0, 0, 0}));
+  values.writable()[1] = 2;
+  const Item item = values;
+  EXPECT_EQ(item.values()->data(), values.data());
+  EXPECT_FALSE(values.buffer().unique());
+  EXPECT_EQ(values.raw().data[1], 2);
+  EXPECT_EQ(values.raw().count, 3U);
+}
+
+TEST(Values, CanBeCutShort) {
+  const Values values{1, 2, 3};
+  EXPECT_EQ(values.first(2), (Values{1, 2}));
+  EXPECT_EQ(values.first(7), values);
+  EXPECT_EQ(values.first(0), Values());
+  EXPECT_EQ(values.first(0).raw().count, 0U);
+}
+
+TEST(Values, MayBeEmpty) {
+  BufferPool pool;
+  const Item none = Values(0, pool);
+  EXPECT_EQ(none.type(), QUELL_TYPE_VALUE);
+  EXPECT_EQ(none.values()->size(), 0U);
+  EXPECT_EQ(none.values()->begin(), none.values()->end());
+  EXPECT_EQ(pool.usage().allocated, 0U);
+}
+
 TEST(CameraRecord, ListsObjectsByAscendingId) {
   Camera camera;
   camera.object_to_world[7] = {7};

@@ -33,6 +33,32 @@ TEST_F(Sanitize, CountsAndReplacesWhatIsNotFinite) {
   EXPECT_EQ(image.floats().at(0, 0, 0), kInfinity) << "who else holds the image keeps it as it was";
 }
 
+TEST_F(Sanitize, MendsWhatNobodyElseHoldsInItsPlace) {
+  Image image = flat_color({33, 5}, 2.0F, pool);
+  image.writable_floats().at(32, 4, 2) = kNan;
+  const void* pixels = image.buffer().data();
+  Item item = std::move(image);
+  EXPECT_EQ(sanitize(item, *executor, pool), 1);
+  EXPECT_EQ(item.image()->buffer().data(), pixels);
+  EXPECT_EQ(item.image()->floats().at(32, 4, 2), 0.0F);
+  EXPECT_EQ(item.image()->floats().at(31, 4, 2), 2.0F);
+  EXPECT_EQ(pool.usage().allocated, 1U);
+}
+
+TEST_F(Sanitize, LeavesNumbersThatSomebodyElseHoldsAsTheyWere) {
+  Values mine{kInfinity, 1};
+  Item item = mine;
+  EXPECT_EQ(sanitize(item, *executor, pool), 1);
+  EXPECT_EQ(*item.values(), (Values{0, 1}));
+  EXPECT_EQ(mine[0], kInfinity);
+
+  const double* place = mine.data();
+  item = std::move(mine);
+  EXPECT_EQ(sanitize(item, *executor, pool), 1);
+  EXPECT_EQ(item.values()->data(), place);
+  EXPECT_EQ(*item.values(), (Values{0, 1}));
+}
+
 TEST_F(Sanitize, HeedsStridesThatAreLargerThanUsual) {
   Image image(QUELL_TYPE_COLOR, {5, 300}, pool, 3);
   const FloatOutput pixels = image.writable_floats();
