@@ -13,7 +13,9 @@ namespace {
 constexpr std::ptrdiff_t kLine = 64 / sizeof(float);  // elements in a cache line, which is also the widest vector
 
 std::size_t physical_memory() {
-  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  static const std::size_t bytes =
+      static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  return bytes;
 }
 
 std::string gibibytes(std::size_t bytes) {
@@ -21,16 +23,20 @@ std::string gibibytes(std::size_t bytes) {
   return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " GiB";
 }
 
+[[noreturn]] void refuse(Size size, const std::string& why) {
+  throw Error(Fault::input, "",
+              "an image of " + std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels" + why);
+}
+
 // What only a broken or hostile header asks for, told before memory is taken: the system would hand it out, and kill the program
 // when it is used.
 void check_size(PortType type, Size size) {
   const auto allowed = [](int side) { return side >= 1 && side <= Image::kMaxSize; };
-  const std::string image = "an image of " + std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels";
   if (!allowed(size.width) || !allowed(size.height))
-    throw Error(Fault::input, "", image + "; sides from 1 to " + std::to_string(Image::kMaxSize) + " are possible");
+    refuse(size, "; sides from 1 to " + std::to_string(Image::kMaxSize) + " are possible");
   const std::size_t bytes = Image::bytes_needed(type, size);
   if (bytes > physical_memory())
-    throw Error(Fault::input, "", image + " takes " + gibibytes(bytes) + "; this machine has " + gibibytes(physical_memory()));
+    refuse(size, " takes " + gibibytes(bytes) + "; this machine has " + gibibytes(physical_memory()));
 }
 
 }  // namespace
