@@ -19,8 +19,9 @@ set(public_headers
   text/error.h text/diagnostic.h text/json.h
   image/port_type.h image/buffer_pool.h image/image.h image/item.h image/stream.h
   plugin/registry.h plugin/pass_instance.h
-  graph/graph.h graph/plan.h
-  runtime/executor.h runtime/function_ref.h runtime/host.h runtime/sanitize.h runtime/session.h runtime/trace.h runtime/window.h
+  graph/graph.h graph/plan.h graph/slowest_cycles.h
+  runtime/analysis.h runtime/executor.h runtime/function_ref.h runtime/host.h runtime/sanitize.h runtime/session.h
+  runtime/trace.h runtime/window.h
   sequence/sequence.h sequence/frame_range.h sequence/file_sink.h
   testing/pass_test.h testing/conformance.h testing/conformance_checks.h testing/synthetic.h)
 foreach(header IN LISTS public_headers)
