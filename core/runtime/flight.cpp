@@ -38,20 +38,18 @@ void Flight::use(const PlanState& state, const Window& window, int threads) {
   for (const PlannedResult& result : state.plan.results())
     if (kept.insert(result.from).second) held_bytes_ = add(held_bytes_, state.plan.bytes(result.from));
 
-  // Those that were admitted for the former plan stay.
-  const std::size_t size = std::max({static_cast<std::size_t>(window.frames), admitted_ - retired_, std::size_t{1}});
-  in_flight_.assign(size, {});
+  in_flight_.assign(static_cast<std::size_t>(window.frames), {});
   for (InFlight& frame : in_flight_) {
     frame.extras.resize(step_bytes_.size());
     frame.waits.resize(step_bytes_.size());
     frame.done.resize(step_bytes_.size());
   }
   ready_.clear();
-  ready_.reserve(size * step_bytes_.size());
-  refused_.reserve(size * step_bytes_.size());
+  ready_.reserve(in_flight_.size() * step_bytes_.size());
+  refused_.reserve(in_flight_.size() * step_bytes_.size());
   charged_ = window.fixed_bytes;
-  for (std::size_t index = retired_; index < admitted_; ++index)
-    charged_ = add(charged_, at(index).charge = window.bytes_per_frame);
+  const std::size_t were_admitted = std::exchange(admitted_, retired_);
+  while (admitted_ < were_admitted && may_admit()) admit();
 }
 
 bool Flight::may_admit() const {

@@ -30,7 +30,8 @@ struct FrameStep {
 class Flight {
  public:
   explicit Flight(const std::vector<std::int64_t>& frames) : frames_(frames) {}
-  /// Before the first frame is admitted, and again while none is between begin() and retire().
+  /// Before the first frame is admitted, and again while none is between begin() and retire(); of those that are admitted, only
+  /// as many stay so as the new window has room for.
   void use(const PlanState& state, const Window& window, int threads);
 
   std::size_t retired() const { return retired_; }

@@ -41,7 +41,14 @@ class InputReader {
   std::optional<Key> next();
   /// Reads it; never throws. `executor` cleans large images in parallel.
   Read read(const Key& key, Executor& executor) const;
-  void put(const Key& key, Read read) { known_[key] = std::move(read); }
+  void put(const Key& key, Read read) {
+    if (const auto wanted = known_.find(key); wanted != known_.end()) wanted->second = std::move(read);
+  }
+  /// Lets go of `frame` and all after it, until they are wanted again.
+  void forget_from(std::int64_t frame) {
+    queue_.erase(queue_.lower_bound({frame, 0}), queue_.end());
+    known_.erase(known_.lower_bound({frame, 0}), known_.end());
+  }
   /// Whether all that the frame wants has been put.
   bool is_ready(std::int64_t frame, const PlanState& state) const;
   /// Why a frame that is ready cannot be computed: the error of its first input that could not be read; "" when there is none.

@@ -82,6 +82,7 @@ bool Scheduler::is_finished() const {
   return stopped_ || flight_.retired() >= end_;
 }
 
+// What unfinished frames leave is void.
 void Scheduler::shut_down() {
   {
     Lock lock(mutex_);
@@ -91,15 +92,15 @@ void Scheduler::shut_down() {
   files_wake_.notify_all();
   file_threads_.clear();
   session_.executor.budget().on_free({});
+  for (std::size_t index = flight_.retired(); index < flight_.admitted(); ++index) lane(index).clear();
+  if (flight_.retired() < frames_.size()) session_.running->history.forget_from(frames_[flight_.retired()]);
 }
 
-// Of a run that was cut short, frames that were written before an earlier one count, too. What others left is void.
+// Of a run that was cut short, frames that were written before an earlier one count, too.
 void Scheduler::collect_rest() {
   stopped_ = true;
   for (std::size_t index = flight_.retired(); index < std::min(flight_.admitted(), end_); ++index)
     if (frame(index).phase == Phase::ended) reports_.push_back(std::move(frame(index).report));
-  for (std::size_t index = flight_.retired(); index < flight_.admitted(); ++index) lane(index).clear();
-  if (flight_.retired() < frames_.size()) session_.running->history.forget_from(frames_[flight_.retired()]);
 }
 
 // ---- drivers ----
@@ -259,14 +260,15 @@ bool Scheduler::plan_anew(const InputShapes& shapes) {
     frame(first).report.error = what_failed(session_.pool);
     return false;
   }
-  std::vector<Frame> moved;
-  for (std::size_t index = first; index < flight_.admitted(); ++index) moved.push_back(std::move(frame(index)));
+  std::vector<Frame> waiting;
+  for (std::size_t index = first; index < flight_.admitted(); ++index) waiting.push_back(std::move(frame(index)));
   flight_.use(*session_.running, session_.window, static_cast<int>(session_.executor.slots()));
   in_flight_.clear();
   in_flight_.resize(flight_.places());
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    frame(first + i) = std::move(moved[i]);
-    reader_.want(frames_[first + i], *session_.running);
+  if (flight_.admitted() < end_) reader_.forget_from(frames_[flight_.admitted()]);
+  for (std::size_t index = first; index < flight_.admitted(); ++index) {
+    frame(index) = std::move(waiting[index - first]);
+    reader_.want(frames_[index], *session_.running);
   }
   return true;
 }
