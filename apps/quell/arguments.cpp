@@ -1,7 +1,10 @@
 #include "arguments.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
+
+#include "quell/text/diagnostic.h"
 
 namespace quell::app {
 
@@ -18,7 +21,7 @@ void add_options(CLI::App& app, VerbosityArguments& arguments) {
   app.add_flag("-q,--quiet", arguments.quiet, "Say nothing but warnings and errors.")
       ->disable_flag_override()
       ->group(kOtherGroup);
-  app.add_flag("-v,--verbose", arguments.verbose, "Say more: what passes tell for debugging, and where the time goes.")
+  app.add_flag("-v,--verbose", arguments.verbose, "Say more: what passes tell for debugging, and how frames overlap.")
       ->disable_flag_override()
       ->group(kOtherGroup);
 }
@@ -61,13 +64,22 @@ void add_options(CLI::App& app, SequenceArguments& arguments) {
       ->group(kInputGroup);
 }
 
-int parse_count(const std::string& text, const char* option, int smallest, int largest) {
+int parse_count(const std::string& text, const char* option, int smallest, int largest, const char* or_else) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || value < smallest || value > largest)
-    throw Error(Fault::usage, option,
-                "'" + text + "' is not a whole number from " + std::to_string(smallest) + " to " + std::to_string(largest));
+    throw Error(
+        Fault::usage, option,
+        "'" + text + "' is not a whole number from " + std::to_string(smallest) + " to " + std::to_string(largest) + or_else);
   return value;
+}
+
+std::size_t parse_choice(const std::string& text, const char* option, const std::vector<std::string>& choices) {
+  const auto choice = std::find(choices.begin(), choices.end(), text);
+  if (choice == choices.end())
+    throw Error(Fault::usage, option,
+                "'" + text + "' is not possible" + did_you_mean(text, choices) + "; choose " + list_names(choices));
+  return static_cast<std::size_t>(choice - choices.begin());
 }
 
 }  // namespace quell::app

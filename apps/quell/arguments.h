@@ -44,6 +44,7 @@ struct SequenceArguments {
 inline constexpr const char* kInputGroup = "What to read";
 inline constexpr const char* kOutputGroup = "What to write";
 inline constexpr const char* kGraphGroup = "The graph";
+inline constexpr const char* kScheduleGroup = "How to run";
 inline constexpr const char* kOtherGroup = "Other options";
 
 void add_options(CLI::App& app, VerbosityArguments& arguments);
@@ -56,7 +57,9 @@ CLI::Option* add_repeatable(CLI::App& app, const char* name, std::vector<std::st
 /// An option with one value.
 CLI::Option* add_text(CLI::App& app, const char* name, std::string& value, const char* value_name, const char* help);
 
-/// A whole number of at least `smallest`. Throws Error(usage) naming the option.
-int parse_count(const std::string& text, const char* option, int smallest, int largest);
+/// A whole number of at least `smallest`. Throws Error(usage) naming the option; `or_else` ends the message.
+int parse_count(const std::string& text, const char* option, int smallest, int largest, const char* or_else = "");
+/// The place of `text` among the choices. Throws Error(usage) naming the option.
+std::size_t parse_choice(const std::string& text, const char* option, const std::vector<std::string>& choices);
 
 }  // namespace quell::app

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "arguments.h"
 #include "commands.h"
@@ -9,25 +10,28 @@
 #include "job.h"
 #include "progress.h"
 #include "quell/runtime/session.h"
+#include "quell/runtime/window.h"
 #include "results.h"
+#include "run_log.h"
+#include "run_options.h"
 #include "run_summary.h"
+#include "trace_file.h"
 
 namespace quell::app {
 namespace {
 
-constexpr int kMostThreads = 1024;
-
 struct Arguments {
   GraphArguments graph;
   SequenceArguments sequence;
+  ScheduleArguments schedule;
   VerbosityArguments verbosity;
   std::filesystem::path out;
   std::string type = "auto";
   std::string compression = "zip";
   std::string padding;
   std::vector<std::string> formats;
-  std::string threads = "0";
   std::vector<std::string> dumps;
+  std::optional<std::filesystem::path> log_json, trace;
   bool dry_run = false;
 };
 
@@ -56,57 +60,122 @@ void log_of_pass(int level, const std::string& message) {
               message);
 }
 
-ExitCode tell_interrupted(const Job& job, const std::vector<FrameReport>& reports) {
-  std::vector<std::int64_t> done;
-  for (const FrameReport& report : reports)
-    if (report.ok) done.push_back(report.frame);
-  const std::vector<std::int64_t> rest(job.frames.begin() + static_cast<std::ptrdiff_t>(reports.size()), job.frames.end());
-  spdlog::error("interrupted; frames done: {}; not computed: {}", FrameRange(done).text(), FrameRange(rest).text());
-  return kInterrupted;
+/// A trace that is not whole must not look like success.
+ExitCode finish_trace(std::optional<TraceFile>& trace, ExitCode code) {
+  try {
+    if (trace) trace->commit();
+    return code;
+  } catch (const Error& error) {
+    spdlog::error(error.what());
+    return code == kOk ? kInternal : code;
+  }
 }
 
-ExitCode compute(Job& job, const Arguments& arguments, int threads, FileSink& sink, const std::vector<ResultFiles>& results,
-                 Console& console) {
+ExitCode exit_code_of(Ending ending) {
+  switch (ending) {
+    case Ending::done:
+      return kOk;
+    case Ending::failed:
+    case Ending::stopped:
+      return kFramesFailed;
+    case Ending::interrupted:
+      return kInterrupted;
+  }
+  return kInternal;
+}
+
+/// What a run needs before its first frame.
+struct Preparation {
+  Job job;
+  std::unique_ptr<FileSink> sink;
+  std::vector<ResultFiles> results;
   SessionOptions options;
-  options.threads = threads;
-  options.dumps = arguments.dumps;
-  options.log = log_of_pass;
+};
+
+ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log, Console& console) {
+  Job& job = run.job;
+  SessionOptions options = run.options;
+  options.log = [&](int level, const std::string& message) {
+    log_of_pass(level, message);
+    const bool known = level >= QUELL_LOG_WARNING;  // the log takes these from spdlog
+    if (!known && (level >= QUELL_LOG_INFO || spdlog::should_log(spdlog::level::debug))) log.message(level, message);
+  };
   options.cancelled = interrupted;
+  options.trace = trace ? &trace->trace() : nullptr;
   Session* running = nullptr;
   Progress progress(console, job.frames.size());
   options.on_frame = [&](const FrameReport& report) {
     const BufferPool::Usage usage = running->pool().usage();
     progress.frame_done(report, usage.in_use + usage.idle);
+    log.frame(report, job.plan, usage);
   };
   Session session(job.graph, options);
   running = &session;
-  const std::vector<FrameReport> reports = session.run(job.frames, *job.sequence, sink);
+  const std::vector<FrameReport> reports = session.run(job.frames, *job.sequence, *run.sink);
   console.set_status("");
 
   tell_new_warnings(job);
-  tell_outcome({job, results, reports, sink.clamped_pixels(), progress.seconds(), session.pool().usage().peak});
-  if (session.plan()) tell_node_times(*session.plan(), reports);
-  if (reports.size() < job.frames.size()) return tell_interrupted(job, reports);
-  const auto failed = [](const FrameReport& report) { return !report.ok; };
-  return std::any_of(reports.begin(), reports.end(), failed) ? kFramesFailed : kOk;
+  FrameSets frames = sort_frames(job.frames, reports);
+  const Ending ending = ending_of(frames, options.stop_on_error);
+  const RunOutcome outcome = {job,
+                              run.results,
+                              reports,
+                              std::move(frames),
+                              ending,
+                              run.sink->clamped_pixels(),
+                              progress.seconds(),
+                              session.pool().usage().peak};
+  tell_outcome(outcome);
+  const ExitCode code = finish_trace(trace, exit_code_of(ending));
+  log.end(outcome, code);
+  return code;
+}
+
+Preparation prepare(const Arguments& arguments) {
+  SessionOptions options = parse_schedule(arguments.schedule);
+  options.dumps = arguments.dumps;
+  FileSinkOptions output = parse_output(arguments);
+  Job job = prepare_job(load(arguments.graph), arguments.sequence, arguments.dumps);
+  if (arguments.padding.empty()) output.padding = job.sequence->padding();
+  auto sink = std::make_unique<FileSink>(output);
+  std::vector<ResultFiles> results = list_results(job, *sink, output);
+  refuse_to_replace_inputs(job, results);
+  return {std::move(job), std::move(sink), std::move(results), std::move(options)};
+}
+
+ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console) {
+  Preparation run = prepare(arguments);
+  const SessionOptions& options = run.options;
+  const int threads = options.threads > 0 ? options.threads : available_threads();
+  const Window window = choose_window(run.job.plan, threads, options.frames_in_flight, options.memory);
+  if (arguments.dry_run) {
+    std::cout << describe_dry_run(run.job, run.results);
+    return kOk;
+  }
+  spdlog::debug("up to {} frames at a time ({}), and {} of images", window.frames, window.reason, format_bytes(window.memory));
+  prepare_folder(arguments.out);
+  log.start(run.job, run.results, options, window);
+  std::optional<TraceFile> trace;
+  if (arguments.trace) trace.emplace(*arguments.trace);
+  const ExitCode code = compute(run, trace, log, console);
+  if (log.ok()) return code;
+  spdlog::error("--log-json: {} could not be written", arguments.log_json->string());
+  return code == kOk ? kInternal : code;
 }
 
 ExitCode run(const Arguments& arguments, Console& console) {
   handle_interrupts();
   set_verbosity(arguments.verbosity.verbosity());
-  const int threads = parse_count(arguments.threads, "--threads", 0, kMostThreads);
-  FileSinkOptions output = parse_output(arguments);
-  Job job = prepare_job(load(arguments.graph), arguments.sequence, arguments.dumps);
-  if (arguments.padding.empty()) output.padding = job.sequence->padding();
-  FileSink sink(output);
-  const std::vector<ResultFiles> results = list_results(job, sink, output);
-  refuse_to_replace_inputs(job, results);
-  if (arguments.dry_run) {
-    std::cout << describe_dry_run(job, results);
-    return kOk;
+  RunLog log(arguments.dry_run ? std::nullopt : arguments.log_json);
+  try {
+    return run_logged(arguments, log, console);
+  } catch (const Error& error) {
+    log.end(error.what(), exit_code(error.fault()));
+    throw;
+  } catch (const std::exception& error) {
+    log.end(error.what(), kInternal);
+    throw;
   }
-  prepare_folder(output.folder);
-  return compute(job, arguments, threads, sink, results, console);
 }
 
 void add_output_options(CLI::App& app, Arguments& arguments) {
@@ -128,6 +197,13 @@ void add_output_options(CLI::App& app, Arguments& arguments) {
       ->group(kOutputGroup);
   add_repeatable(app, "--dump", arguments.dumps, "NODE.PORT", "Write an inner image of the graph, too; repeatable.")
       ->group(kOutputGroup);
+  app.add_option("--log-json", arguments.log_json, "Write what happens to a file, one JSON object a line, as it happens.")
+      ->type_name("FILE")
+      ->group(kOutputGroup);
+  app.add_option("--trace", arguments.trace,
+                 "Write which thread did what when, and the memory held, for ui.perfetto.dev or chrome://tracing.")
+      ->type_name("FILE")
+      ->group(kOutputGroup);
 }
 
 }  // namespace
@@ -139,15 +215,13 @@ Command add_run(CLI::App& program) {
       "  quell run games202 shot/ -o denoised --frames 1-100 --set filter.radius=8\n"
       "reads shot/color.0001.exr and its like, and writes denoised/color.0001.exr to denoised/color.0100.exr.\n"
       "\n"
-      "Exit status: 0 all is well, 1 some frames failed, 2 usage or graph, 3 input, 4 plugin, 70 internal error, 75 "
-      "interrupted.");
+      "Exit status: 0 all is well, 1 some frames failed, 2 usage or graph, 3 input, 4 plugin, 33 memory limit too small, 70 "
+      "internal error, 75 interrupted.");
   auto arguments = std::make_shared<Arguments>();
   add_options(app, arguments->graph);
   add_options(app, arguments->sequence);
   add_output_options(app, *arguments);
-  add_text(app, "--threads", arguments->threads, "N",
-           "Threads to compute with; 0, the default, for as many as there are processors.")
-      ->group(kOtherGroup);
+  add_options(app, arguments->schedule);
   app.add_flag("-n,--dry-run", arguments->dry_run, "Say what would be read, run and written, and stop there.")
       ->disable_flag_override()
       ->group(kOtherGroup);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <set>
 
 #include "quell/sequence/file_pattern.h"
@@ -71,6 +72,17 @@ void refuse_to_replace_inputs(const Job& job, const std::vector<ResultFiles>& re
                           "' of the sequence; choose another folder");
     }
   }
+}
+
+void refuse_to_replace_others(const fs::path& file, std::string_view beginning, const char* option) {
+  if (file.empty()) throw Error(Fault::usage, option, "the name is empty; name a file");
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return;
+  std::string found(beginning.size(), ' ');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(found.data(), static_cast<std::streamsize>(found.size()));
+  if (stream.gcount() > 0 && found != beginning)
+    throw Error(Fault::usage, option, file.string() + " is there, and was not written by this option; choose another name");
 }
 
 void prepare_folder(const fs::path& folder) {

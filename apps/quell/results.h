@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "job.h"
@@ -22,6 +23,10 @@ std::vector<ResultFiles> list_results(const Job& job, const FileSink& sink, cons
 
 /// Throws Error(usage) when a result would replace a file of the sequence, be it read or not.
 void refuse_to_replace_inputs(const Job& job, const std::vector<ResultFiles>& results);
+
+/// Throws Error(usage) naming the option when `file` is there, and neither empty nor begins so: it is not what a former run
+/// wrote.
+void refuse_to_replace_others(const std::filesystem::path& file, std::string_view beginning, const char* option);
 
 /// Makes the folder. Throws Error(usage) when that fails, or when nothing can be written there.
 void prepare_folder(const std::filesystem::path& folder);

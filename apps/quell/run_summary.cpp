@@ -1,9 +1,9 @@
 #include "run_summary.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "console.h"
+#include "node_times.h"
 #include "progress.h"
 
 namespace quell::app {
@@ -27,7 +27,33 @@ void tell_failures(const std::vector<FrameReport>& reports) {
   spdlog::error("{} of {} frames failed:{}", failed.size(), reports.size(), list);
 }
 
+void tell_not_computed(const RunOutcome& outcome) {
+  if (outcome.frames.not_computed.empty()) return;
+  const std::string why =
+      outcome.ending == Ending::interrupted
+          ? "interrupted"
+          : "stopped at frame " + std::to_string(outcome.frames.failed.front()) + " because of --on-error stop";
+  spdlog::error("{}; frames done: {}; not computed: {}", why, FrameRange(outcome.frames.done).text(),
+                FrameRange(outcome.frames.not_computed).text());
+}
+
 }  // namespace
+
+FrameSets sort_frames(const std::vector<std::int64_t>& wanted, const std::vector<FrameReport>& reports) {
+  std::map<std::int64_t, bool> known;  // whether it is done
+  for (const FrameReport& report : reports) known[report.frame] = report.ok;
+  FrameSets sets;
+  for (const std::int64_t frame : wanted) {
+    const auto report = known.find(frame);
+    (report == known.end() ? sets.not_computed : report->second ? sets.done : sets.failed).push_back(frame);
+  }
+  return sets;
+}
+
+Ending ending_of(const FrameSets& frames, bool stop_on_error) {
+  if (frames.not_computed.empty()) return frames.failed.empty() ? Ending::done : Ending::failed;
+  return stop_on_error && !frames.failed.empty() ? Ending::stopped : Ending::interrupted;
+}
 
 std::vector<std::string> sum_up_replaced(const std::vector<FrameReport>& reports) {
   struct Sum {
@@ -51,27 +77,15 @@ void tell_outcome(const RunOutcome& outcome) {
   if (outcome.clamped_pixels > 0)
     spdlog::warn("{} pixels were too bright for half floats and were clamped to 65504; --type float keeps them as they are",
                  outcome.clamped_pixels);
-  std::vector<std::int64_t> done;
-  for (const FrameReport& report : outcome.reports)
-    if (report.ok) done.push_back(report.frame);
   const double rate = outcome.seconds > 0 ? static_cast<double>(outcome.reports.size()) / outcome.seconds : 0;
-  spdlog::info("{} of {} frames done in {} ({} frames/s), with up to {} of images", done.size(), outcome.job.frames.size(),
-               format_duration(outcome.seconds), format_rate(rate), format_bytes(outcome.peak_bytes));
-  if (!done.empty())
-    for (const ResultFiles& series : outcome.results) spdlog::info("  {}  {}", series.pattern, frames_text(done));
+  spdlog::info("{} of {} frames done in {} ({} frames/s), with up to {} of images", outcome.frames.done.size(),
+               outcome.job.frames.size(), format_duration(outcome.seconds), format_rate(rate), format_bytes(outcome.peak_bytes));
+  if (!outcome.frames.done.empty())
+    for (const ResultFiles& series : outcome.results) spdlog::info("  {}  {}", series.pattern, frames_text(outcome.frames.done));
+  if (const std::string table = time_table(outcome.job.plan, outcome.reports, outcome.seconds); !table.empty())
+    spdlog::info(table);
   tell_failures(outcome.reports);
-}
-
-void tell_node_times(const Plan& plan, const std::vector<FrameReport>& reports) {
-  std::vector<double> sums(plan.nodes.size(), 0.0);
-  for (const FrameReport& report : reports)
-    if (report.node_seconds.size() == sums.size())
-      std::transform(sums.begin(), sums.end(), report.node_seconds.begin(), sums.begin(), std::plus<>());
-  std::size_t width = 0;
-  const auto name = [&](std::size_t i) { return plan.graph->nodes[static_cast<std::size_t>(plan.nodes[i].node)].name; };
-  for (std::size_t i = 0; i < sums.size(); ++i) width = std::max(width, name(i).size());
-  spdlog::debug("time in the nodes:");
-  for (std::size_t i = 0; i < sums.size(); ++i) spdlog::debug("  {:<{}}  {}", name(i), width, format_duration(sums[i]));
+  tell_not_computed(outcome);
 }
 
 }  // namespace quell::app

@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongLine{{"run"}, "error: GRAPH is missing\n`quell run --help` tells more"},
         WrongLine{{"run", "g", "s"}, "error: --out FOLDER is missing\n`quell run --help` tells more"},
         WrongLine{{"run", "--frame", "0-3", "g", "s", "-o", "x"},
-                  "error: there is no option '--frame'; did you mean '--frames'?\n`quell run --help` tells more"},
+                  "error: there is no option '--frame'; did you mean '--frames' or '--trace'?\n`quell run --help` tells more"},
         WrongLine{{"run", "g", "s", "-o"}, "error: --out needs a value: --out FOLDER\n`quell run --help` tells more"},
         WrongLine{{"run", "g", "s", "t", "-o", "x"}, "error: 't' is one argument too many\n`quell run --help` tells more"},
         WrongLine{{"run", "g", "s", "-o", "x", "-o", "y"}, "error: --out may be given only once\n`quell run --help` tells more"},
@@ -73,6 +73,20 @@ INSTANTIATE_TEST_SUITE_P(
         WrongLine{{"run", "g", "s", "-o", "x", "--threads", "two"},
                   "error: --threads: 'two' is not a whole number from 0 to 1024"},
         WrongLine{{"run", "g", "s", "-o", "x", "--threads", "-1"}, "error: --threads: '-1' is not a whole number from 0 to 1024"},
+        WrongLine{{"run", "g", "s", "-o", "x", "--frames-in-flight", "0"},
+                  "error: --frames-in-flight: '0' is not a whole number from 1 to 1024, or 'auto'"},
+        WrongLine{{"run", "g", "s", "-o", "x", "--frames-in-flight", "1025"},
+                  "error: --frames-in-flight: '1025' is not a whole number from 1 to 1024, or 'auto'"},
+        WrongLine{{"run", "g", "s", "-o", "x", "--frames-in-flight", "2", "--executor", "serial"},
+                  "error: --frames-in-flight: '2' is not possible with --executor serial, which takes one frame after the other"},
+        WrongLine{{"run", "g", "s", "-o", "x", "--memory", "2GB"},
+                  "error: --memory: '2GB' is not an amount of memory; write bytes, with K, M, G or T for powers of 1024, such as "
+                  "512M or 1.5G, or 'auto'"},
+        WrongLine{{"run", "g", "s", "-o", "x", "--executor", "tbbb"},
+                  "error: --executor: 'tbbb' is not possible; did you mean 'tbb'?; choose 'serial' or 'tbb'"},
+        WrongLine{{"run", "g", "s", "-o", "x", "--on-error", "ignore"},
+                  "error: --on-error: 'ignore' is not possible; choose 'continue' or 'stop'"},
+        WrongLine{{"run", "g", "s", "-o", "x", "--log-json", ""}, "error: --log-json: the name is empty; name a file"},
         WrongLine{{"run", "g", "s", "-o", "x", "--type", "hlaf"},
                   "error: --type: 'hlaf' is not possible; did you mean 'half'?; choose 'auto', 'half' or 'float'"},
         WrongLine{{"run", "g", "s", "-o", "x", "--format", "tiff"},
@@ -84,6 +98,13 @@ TEST_F(CommandLine, AnUnknownCompressionIsAnsweredWithTheList) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, StartsWith("error: --compression: 'zap' is not possible; did you mean 'zip'"));
   EXPECT_THAT(outcome.err, HasSubstr("'piz'"));
+}
+
+TEST_F(CommandLine, HelpTellsHowToRunAndEveryExitCode) {
+  const Outcome outcome = quell({"run", "--help"});
+  EXPECT_THAT(outcome.out, HasSubstr("\nHow to run:\n  --threads N "));
+  for (const char* code : {"0 all", "1 some", "2 usage", "3 input", "4 plugin", "33 memory", "70 ", "75 interrupted"})
+    EXPECT_THAT(outcome.out, HasSubstr(code));
 }
 
 TEST_F(CommandLine, ColorsAreForTerminalsAlone) {

@@ -13,9 +13,14 @@ using ::testing::HasSubstr;
 
 class Interrupted : public RunnerTest {
  protected:
+  // A thread is left for the files of frames 1 and 2 while the others wait.
   std::vector<std::string> arguments() {
     make_shot(5);
-    return {"run", make_graph(R"({ "wait_from": 3 })"), text("shot"), "-o", text("out"), "--plugin-path", TEST_PLUGINS};
+    const std::string graph = make_graph(R"({ "wait_from": 3 })");
+    return {"run", graph, text("shot"), "-o", text("out"), "--threads", "4", "--plugin-path", TEST_PLUGINS};
+  }
+  static bool wait_until_stuck(Program& program) {
+    return program.wait_for_error_text("\nwaiting\n") && program.wait_for_error_text("\nframe 2 (2 of 5)");
   }
 };
 
@@ -25,7 +30,7 @@ TEST_F(Interrupted, StopsWithNothingPartialAndSaysWhatIsDone) {
   make_graph(R"({ "wait_from": 3 })");
   for (const int signal : {SIGINT, SIGTERM}) {
     Program program(command);
-    ASSERT_TRUE(program.wait_for_error_text("\nwaiting\n"));
+    ASSERT_TRUE(wait_until_stuck(program));
     program.send(signal);
     const Outcome outcome = program.finish();
     EXPECT_EQ(outcome.code, 75) << outcome.err;
@@ -53,7 +58,7 @@ TEST_F(Interrupted, StopsAtOnceWhenTheSignalComesTwice) {
   std::vector<std::string> command = arguments();
   command.insert(command.end(), {"--set", "scale.stubborn=true"});
   Program program(command);
-  ASSERT_TRUE(program.wait_for_error_text("\nwaiting\n"));
+  ASSERT_TRUE(wait_until_stuck(program));
   program.send(SIGINT);
   ASSERT_TRUE(program.wait_for_error_text("stopping"));
   program.send(SIGINT);

@@ -6,11 +6,14 @@
 namespace quell::app::testing {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::MatchesRegex;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 class Run : public RunnerTest {};
 
@@ -25,6 +28,8 @@ TEST_F(Run, TellsWhatItReadsHowFarItIsAndWhereTheResultsAre) {
   EXPECT_THAT(outcome.err, HasSubstr("frame 2 (2 of 3): 0."));
   EXPECT_THAT(outcome.err, HasSubstr("3 of 3 frames done in "));
   EXPECT_THAT(outcome.err, HasSubstr("  " + text("out") + "/color.####.exr  frames 1-3\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("time of all frames added up"));
+  EXPECT_THAT(outcome.err, ContainsRegex("\n  scale  +0\\.[0-9]+ s  +[0-9.]+ ms   100%\n"));
   EXPECT_THAT(list("out"), ElementsAre("color.0001.exr", "color.0002.exr", "color.0003.exr"));
 }
 
@@ -54,7 +59,7 @@ TEST_F(Run, SaysMoreWhenVerbose) {
   EXPECT_THAT(usual.err, Not(HasSubstr("a detail of the pass")));
   const Outcome verbose = run({"run", graph, text("shot"), "-o", text("out"), "--verbose"});
   EXPECT_THAT(verbose.err, HasSubstr("a detail of the pass\n"));
-  EXPECT_THAT(verbose.err, HasSubstr("time in the nodes:\n  scale  0.0"));
+  EXPECT_THAT(verbose.err, HasSubstr("frames at a time ("));
 }
 
 TEST_F(Run, GoesOnAfterAFrameThatAPassFails) {
@@ -68,6 +73,36 @@ TEST_F(Run, GoesOnAfterAFrameThatAPassFails) {
             "  frame 2: scale: told to fail in frame 2\n"
             "  frame 3: scale: told to fail in frame 3\n");
   EXPECT_THAT(list("out"), ElementsAre("color.0001.exr", "color.0004.exr"));
+}
+
+TEST_F(Run, StopsAfterAFrameThatFailedWhenToldTo) {
+  make_shot(5);
+  for (const char* executor : {"serial", "tbb"}) {
+    const std::string out = std::string("out_") + executor;
+    const Outcome outcome = run({"run", make_graph(R"({ "at": [3] })"), text("shot"), "-o", text(out), "-q", "--on-error", "stop",
+                                 "--executor", executor});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_THAT(outcome.err, StartsWith("error: frame 3 (3 of 5) failed: scale: told to fail in frame 3\n"));
+    EXPECT_THAT(outcome.err,
+                EndsWith("error: stopped at frame 3 because of --on-error stop; frames done: 1-2; not computed: 4-5\n"));
+    EXPECT_THAT(list(out), ElementsAre("color.0001.exr", "color.0002.exr"));
+  }
+}
+
+TEST_F(Run, WithNothingLeftToStopEndsAsUsual) {
+  make_shot(2);
+  const Outcome outcome =
+      run({"run", make_graph(R"({ "at": [2] })"), text("shot"), "-o", text("out"), "-q", "--on-error", "stop"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, Not(HasSubstr("stopped")));
+}
+
+TEST_F(Run, WithTooLittleMemoryDoesNothing) {
+  make_shot(2);
+  const Outcome outcome = run({"run", make_graph(), text("shot"), "-o", text("out"), "-q", "--memory", "1K"});
+  EXPECT_EQ(outcome.code, 33);
+  EXPECT_THAT(outcome.err, StartsWith("error: "));
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
 }
 
 TEST_F(Run, GoesOnAfterAFrameThatCannotBeRead) {
@@ -121,13 +156,18 @@ TEST_F(Run, TakesParametersFromOutside) {
   EXPECT_EQ(plain, bytes_with({"--params", text("params.json"), "--set", "scale.gain=1"})) << "--set wins";
 }
 
-TEST_F(Run, GivesTheSameBytesForEveryNumberOfThreads) {
-  make_shot(2);
+TEST_F(Run, GivesTheSameBytesHoweverItRuns) {
+  make_shot(6);
   const std::string graph = make_graph(R"({ "gain": 0.3 })");
-  for (const char* threads : {"1", "2"})
-    EXPECT_EQ(run({"run", graph, text("shot"), "-o", text(threads), "-q", "--threads", threads}).code, 0);
-  EXPECT_EQ(contents("1"), contents("2"));
-  EXPECT_EQ(contents("1").size(), 2U);
+  EXPECT_EQ(run({"run", graph, text("shot"), "-o", text("serial"), "-q", "--executor", "serial"}).code, 0);
+  EXPECT_EQ(contents("serial").size(), 6U);
+  for (const char* threads : {"1", "2", "4"})
+    for (const char* frames : {"1", "4", "auto"}) {
+      const std::string out = std::string(threads) + "_" + frames;
+      EXPECT_EQ(run({"run", graph, text("shot"), "-o", text(out), "-q", "--threads", threads, "--frames-in-flight", frames}).code,
+                0);
+      EXPECT_EQ(contents(out), contents("serial")) << out;
+    }
 }
 
 TEST_F(Run, WithoutAFolderForTheResultsDoesNothing) {

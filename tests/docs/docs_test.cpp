@@ -148,7 +148,7 @@ TEST(DocsMatching, FindsCommandsInTheReadme) { EXPECT_GE(parse(QUELL_SOURCE_DIR 
 
 INSTANTIATE_TEST_SUITE_P(Readme, Docs,
                          ::testing::Values("README.md", "graphs/README.md", "passes/README.md", "core/README.md",
-                                           "core/sequence/README.md"),
+                                           "core/sequence/README.md", "apps/quell/README.md"),
                          [](const auto& page) {
                            std::string name = page.param;
                            for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';

@@ -1,0 +1,73 @@
+#include "run_options.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+
+#include "arguments.h"
+
+namespace quell::app {
+namespace {
+
+constexpr int kMostThreads = 1024;
+constexpr int kMostFrames = 1024;
+constexpr std::string_view kUnits = "KMGT";
+
+int parse_frames_in_flight(const std::string& text, bool serial) {
+  const int frames = text == "auto" ? 0 : parse_count(text, "--frames-in-flight", 1, kMostFrames, ", or 'auto'");
+  if (frames > 1 && serial)
+    throw Error(Fault::usage, "--frames-in-flight",
+                "'" + text + "' is not possible with --executor serial, which takes one frame after the other");
+  return serial ? 1 : frames;
+}
+
+}  // namespace
+
+std::size_t parse_memory(const std::string& text) {
+  constexpr double kMost = 1e18;
+  if (text == "auto") return 0;
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [unit, error] = std::from_chars(text.data(), end, value, std::chars_format::fixed);
+  const bool is_number = error == std::errc() && text.front() >= '0' && text.front() <= '9';
+  const std::size_t power = unit == end ? 0 : kUnits.find(static_cast<char>(std::toupper(static_cast<unsigned char>(*unit)))) + 1;
+  const bool is_whole = value == std::floor(value);
+  for (std::size_t i = 0; i < power && i < kUnits.size(); ++i) value *= 1024;
+  if (!is_number || end - unit > 1 || (unit != end && power == 0) || (power == 0 && !is_whole) || value < 1 || value > kMost)
+    throw Error(Fault::usage, "--memory",
+                "'" + text +
+                    "' is not an amount of memory; write bytes, with K, M, G or T for powers of 1024, such as 512M or 1.5G, or "
+                    "'auto'");
+  return static_cast<std::size_t>(value);
+}
+
+SessionOptions parse_schedule(const ScheduleArguments& arguments) {
+  SessionOptions options;
+  options.threads = parse_count(arguments.threads, "--threads", 0, kMostThreads);
+  const bool serial = parse_choice(arguments.executor, "--executor", {"serial", "tbb"}) == 0;
+  options.schedule = serial ? Schedule::serial : Schedule::concurrent;
+  options.frames_in_flight = parse_frames_in_flight(arguments.frames_in_flight, serial);
+  options.memory = parse_memory(arguments.memory);
+  options.stop_on_error = parse_choice(arguments.on_error, "--on-error", {"continue", "stop"}) == 1;
+  return options;
+}
+
+void add_options(CLI::App& app, ScheduleArguments& arguments) {
+  add_text(app, "--threads", arguments.threads, "N",
+           "Threads that compute, decode and encode at a time; 0, the default, for as many as there are processors.")
+      ->group(kScheduleGroup);
+  add_text(app, "--frames-in-flight", arguments.frames_in_flight, "N",
+           "Most frames at a time, from reading to writing: 1 to 1024, or auto, the default: what loops, memory and threads "
+           "make useful.")
+      ->group(kScheduleGroup);
+  add_text(app, "--memory", arguments.memory, "SIZE",
+           "Most memory for images: bytes, or with K, M, G or T, such as 512M or 1.5G; auto, the default, for half of what there "
+           "is.")
+      ->group(kScheduleGroup);
+  add_text(app, "--executor", arguments.executor, "NAME",
+           "tbb, the default, or serial: one node after the other, for comparison. The results are the same.")
+      ->group(kScheduleGroup);
+  add_text(app, "--on-error", arguments.on_error, "WHAT", "When a frame fails: continue, the default, with the others, or stop.")
+      ->group(kScheduleGroup);
+}
+
+}  // namespace quell::app

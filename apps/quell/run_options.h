@@ -1,0 +1,31 @@
+// How a run goes through nodes and frames, as the command line says it.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "quell/runtime/session.h"
+
+namespace CLI {
+class App;
+}
+
+namespace quell::app {
+
+struct ScheduleArguments {
+  std::string threads = "0";
+  std::string frames_in_flight = "auto";
+  std::string memory = "auto";
+  std::string executor = "tbb";
+  std::string on_error = "continue";
+};
+
+void add_options(CLI::App& app, ScheduleArguments& arguments);
+
+/// The session's options that these arguments state. Throws Error(usage) naming the option.
+SessionOptions parse_schedule(const ScheduleArguments& arguments);
+
+/// Bytes: "1000000", "512M", "1.5G" (powers of 1024); 0 for "auto". Throws Error(usage) naming --memory.
+std::size_t parse_memory(const std::string& text);
+
+}  // namespace quell::app
