@@ -21,7 +21,7 @@ set(public_headers
   plugin/registry.h plugin/pass_instance.h
   graph/graph.h graph/plan.h graph/slowest_cycles.h
   runtime/analysis.h runtime/executor.h runtime/function_ref.h runtime/host.h runtime/sanitize.h runtime/session.h
-  runtime/trace.h runtime/window.h
+  runtime/thread_budget.h runtime/trace.h runtime/window.h
   sequence/sequence.h sequence/frame_range.h sequence/file_sink.h
   testing/pass_test.h testing/conformance.h testing/conformance_checks.h testing/synthetic.h)
 foreach(header IN LISTS public_headers)
