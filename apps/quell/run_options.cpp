@@ -1,7 +1,9 @@
 #include "run_options.h"
 
 #include <CLI/CLI.hpp>
+#include <cctype>
 #include <charconv>
+#include <cmath>
 
 #include "arguments.h"
 
@@ -25,19 +27,24 @@ int parse_frames_in_flight(const std::string& text, bool serial) {
 std::size_t parse_memory(const std::string& text) {
   constexpr double kMost = 1e18;
   if (text == "auto") return 0;
+  std::string_view digits = text;
+  const char last = digits.empty() ? '\0' : digits.back();
+  const std::size_t unit = kUnits.find(static_cast<char>(std::toupper(static_cast<unsigned char>(last))));
+  const bool has_unit = unit != std::string_view::npos;
+  if (has_unit) digits.remove_suffix(1);
+
   double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [unit, error] = std::from_chars(text.data(), end, value, std::chars_format::fixed);
-  const bool is_number = error == std::errc() && text.front() >= '0' && text.front() <= '9';
-  const std::size_t power = unit == end ? 0 : kUnits.find(static_cast<char>(std::toupper(static_cast<unsigned char>(*unit)))) + 1;
-  const bool is_whole = value == std::floor(value);
-  for (std::size_t i = 0; i < power && i < kUnits.size(); ++i) value *= 1024;
-  if (!is_number || end - unit > 1 || (unit != end && power == 0) || (power == 0 && !is_whole) || value < 1 || value > kMost)
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed);
+  const bool is_number =
+      error == std::errc() && end == digits.data() + digits.size() && digits.front() >= '0' && digits.front() <= '9';
+  const double bytes = has_unit ? std::ldexp(value, 10 * (static_cast<int>(unit) + 1)) : value;
+  const bool is_half_a_byte = !has_unit && value != std::floor(value);  // "1.5": the unit was forgotten
+  if (!is_number || is_half_a_byte || bytes < 1 || bytes > kMost)
     throw Error(Fault::usage, "--memory",
                 "'" + text +
                     "' is not an amount of memory; write bytes, with K, M, G or T for powers of 1024, such as 512M or 1.5G, or "
                     "'auto'");
-  return static_cast<std::size_t>(value);
+  return static_cast<std::size_t>(bytes);
 }
 
 SessionOptions parse_schedule(const ScheduleArguments& arguments) {
