@@ -95,7 +95,8 @@ TEST(Image, SharesItsPixelsWithACopyOfAnotherType) {
 
 TEST(Item, KnowsWhatItHolds) {
   BufferPool pool;
-  EXPECT_FALSE(Item());
+  const Item nothing;
+  EXPECT_FALSE(nothing);
   EXPECT_EQ(Item(Image(QUELL_TYPE_DEPTH, {2, 2}, pool)).type(), QUELL_TYPE_DEPTH);
   EXPECT_EQ(Item(Camera()).type(), QUELL_TYPE_CAMERA);
   const Item values(Values{1, 2, 3});
