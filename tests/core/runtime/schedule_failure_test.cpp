@@ -149,6 +149,32 @@ TEST_P(Failure, ToReadWithSomethingElseThanAnErrorIsContained) {
   EXPECT_EQ(sink.pixel("color", 5), 5);
 }
 
+TEST_P(Failure, ThatIsNoExceptionOfTheStandardIsContainedToo) {
+  source.paint = [](Image&, std::int64_t frame) {
+    if (frame == 2) throw 7;
+  };
+  const auto reports = run(test_graph(kSumGraph), {1, 2, 3});
+  EXPECT_THAT(failed(reports), ElementsAre(2));
+  EXPECT_FALSE(reports[1].error.empty());
+}
+
+TEST_P(Failure, OfTheCallersCallbackEndsTheRunAndHarmsNoLaterOne) {
+  SessionOptions chosen = options();
+  bool is_broken = true;
+  chosen.on_frame = [&](const FrameReport& report) {
+    if (is_broken && report.frame == 3) throw std::runtime_error("the caller has had enough");
+  };
+  Session session(test_graph(kSumGraph), chosen);
+  EXPECT_THROW(session.run({1, 2, 3, 4, 5, 6}, source, sink), std::runtime_error);
+  is_broken = false;
+  sink.items.clear();
+  EXPECT_THAT(failed(session.run({20, 21, 22}, source, sink)), ElementsAre());
+  EXPECT_THAT(handed_out(sink, "color"), ElementsAre(20, 21, 22));
+  EXPECT_EQ(sink.pixel("color", 22), 20 + 21 + 22);
+  sink.items.clear();
+  EXPECT_EQ(session.pool().usage().in_use, Image::bytes_needed(QUELL_TYPE_COLOR, source.size)) << "one frame of history";
+}
+
 TEST_P(Failure, ToWriteLeavesHistory) {
   sink.unwritable = {2, 3};
   const auto reports = run(test_graph(kSumGraph), {1, 2, 3, 4});

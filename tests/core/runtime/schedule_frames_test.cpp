@@ -174,6 +174,23 @@ TEST(ScheduleOfFrames, ThatArePushedGoesOnWhereARunEndedAndBack) {
   }
 }
 
+TEST(ScheduleOfFrames, OfSeveralSessionsAtATimeDoesNotShow) {
+  const auto graph = graph_with_everything();
+  const Scene scene{.frames = frames_up_to(20)};
+  const Outcome want = run(graph, kInputs, scene, serial());
+  std::vector<Outcome> got(4);
+  {
+    std::vector<std::jthread> callers;
+    for (std::size_t i = 0; i < got.size(); ++i)
+      callers.emplace_back([&, i] {
+        SessionOptions options = concurrent({static_cast<int>(i) + 1, 4});
+        if (i == 3) options.schedule = Schedule::serial;
+        got[i] = run(graph, kInputs, scene, options);
+      });
+  }
+  for (const Outcome& outcome : got) expect_same(outcome, want);
+}
+
 TEST(ScheduleOfFrames, WantsNumbersThatAscend) {
   for (const SessionOptions& options : {serial(), concurrent({2, 4})})
     for (const std::vector<std::int64_t>& frames : {std::vector<std::int64_t>{1, 3, 2}, {1, 1}, {0, -1}}) {

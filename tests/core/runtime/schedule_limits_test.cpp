@@ -104,6 +104,7 @@ TEST(MemoryLimit, HoldsForRandomGraphsAndChangesNothing) {
     EXPECT_EQ(choose_window(plan, threads, frames, options.memory).frames, frames);
     EXPECT_EQ(choose_window(plan, threads, frames + 1, options.memory).frames, frames) << "there is no room for one more";
     RecordingSink sink(scene.unwritable);
+    source.keeps_busy = sink.keeps_busy = dice.chance(50);
     Session session(checked, options);
     session.pool().fill(0xff);
     Outcome got;
@@ -165,6 +166,92 @@ TEST(MemoryLimit, ThatHasNoRoomForOneFrameIsRefusedWithTheFigureNeeded) {
   EXPECT_TRUE(sink.take().empty());
   options.memory = needed;
   EXPECT_EQ(Session(graph, options).run(scene.frames, source, sink).size(), 3U);
+}
+
+// Eight branches that take one image when they run one after the other, and eight when all of them begin at once; beside them
+// results that later frames need.
+std::shared_ptr<const Graph> wide_graph() {
+  std::string nodes, before = "color";
+  for (const char* i : {"0", "1", "2", "3", "4", "5", "6", "7"}) {
+    const std::string number(i), wait = "wait" + number, small = "small" + number, sum = "sum" + number;
+    nodes += '"' + wait + R"(": {"pass": "linger", "in": {"color": "color"}, "params": {"salt": )" + number + R"(}},
+      ")" + small +
+             R"(": {"pass": "reduce", "in": {"color": ")" + wait + R"(.color"}},
+      ")" + sum +
+             R"(": {"pass": "stir", "in": {"color": ")" + small + R"(.weight", "other": ")" + before + R"("}},)";
+    before = sum + ".color";
+  }
+  return test_graph(R"({"quell": 1, "inputs": {"color": "color"}, "nodes": {)" + nodes + R"(
+    "kept": {"pass": "parts", "in": {"color": "color", "items": ["color", "color"]}},
+    "last": {"pass": "stir", "in": {"color": ")" +
+                    before + R"(", "more": [{"from": "kept.items[0]", "delay": 1, "initial": "none"},
+                                    {"from": "kept.items[1]", "delay": 2, "initial": "none"}]}}},
+    "outputs": {"sum": "last.color"}})");
+}
+
+TEST(MemoryLimit, HoldsWhenNodesRunAheadOfThePlansOrder) {
+  const auto graph = wide_graph();
+  Scene scene = scene_of(10);
+  scene.size = {40, 24};
+  const Outcome want = run(graph, {{"color"}}, scene, serial());
+  for (const int threads : {4, 8})
+    for (const int frames : {1, 2, 3, 4, 6}) {
+      SCOPED_TRACE(std::to_string(threads) + " threads, room for " + std::to_string(frames) + " frames");
+      PatternSource source({{"color"}}, scene);
+      source.on_read = [&](std::string_view, std::int64_t frame) { wait_ms(static_cast<int>(frame % 4)); };
+      RecordingSink sink;
+      sink.on_write = [&](std::string_view, std::int64_t frame) { wait_ms(frame % 4 == 2 ? 9 : 0); };
+      SessionOptions options = concurrent({threads, 0});
+      options.memory = memory_for(plan_of(graph, source), threads, frames);
+      Session session(graph, options);
+      const auto reports = session.run(scene.frames, source, sink);
+      EXPECT_LE(session.pool().usage().peak, options.memory);
+      expect_same({sink.take(), reports}, want);
+    }
+}
+
+// Frames are read before their size is known: what was read ahead may be beyond the limit, but nothing else.
+TEST(MemoryLimit, HoldsWhenLargerFramesCome) {
+  const auto graph = test_graph(R"({"quell": 1, "inputs": {"color": "color"},
+    "nodes": {"copies": {"pass": "parts", "in": {"color": "color", "items": ["color", "color", "color", "color", "color", "color"]}},
+              "wait": {"pass": "linger", "in": {"color": "copies.items[0]"}},
+              "sum": {"pass": "stir", "in": {"color": "wait.color", "more": ["copies.items[1]", "copies.items[2]",
+                      "copies.items[3]", "copies.items[4]", "copies.items[5]"]}}},
+    "outputs": {"sum": "sum.color"}})");
+  Scene scene = scene_of(20);
+  scene.size = {8, 8};
+  for (std::int64_t frame = 6; frame <= 16; ++frame) scene.odd[frame] = {64, 64};
+  const Outcome want = run(graph, {{"color"}}, scene, serial());
+  PatternSource large({{"color"}}, {.frames = scene.frames, .size = {64, 64}});
+  const std::size_t read_ahead = 8 * Image::bytes_needed(QUELL_TYPE_COLOR, {64, 64});
+  for (const int frames : {1, 2, 3}) {
+    SCOPED_TRACE("room for " + std::to_string(frames) + " large frames");
+    PatternSource source({{"color"}}, scene);
+    SessionOptions options = concurrent({4, 8});
+    options.memory = memory_for(plan_of(graph, large), 4, frames);
+    RecordingSink sink;
+    Session session(graph, options);
+    const auto reports = session.run(scene.frames, source, sink);
+    EXPECT_LE(session.pool().usage().peak, options.memory + read_ahead);
+    expect_same({sink.take(), reports}, want);
+  }
+}
+
+TEST(MemoryLimit, FailsFramesThatAreTooLargeAlone) {
+  const auto graph = test_graph(kLoop);
+  Scene scene = scene_of(9);
+  scene.odd = {{4, {100, 100}}, {7, {100, 100}}};
+  PatternSource source({{"color"}}, scene);
+  for (const Schedule schedule : {Schedule::serial, Schedule::concurrent}) {
+    SessionOptions options{.threads = 2, .schedule = schedule, .frames_in_flight = 3};
+    options.memory = memory_for(plan_of(graph, source), 2, 3);
+    RecordingSink sink;
+    const auto reports = Session(graph, options).run(scene.frames, source, sink);
+    ASSERT_EQ(reports.size(), 9U);
+    for (const FrameReport& report : reports) EXPECT_EQ(report.ok, report.frame != 4 && report.frame != 7) << report.error;
+    EXPECT_THAT(reports[3].error, HasSubstr("are needed")) << "as when no frame fits";
+    EXPECT_EQ(sink.take().size(), 2U * 7);
+  }
 }
 
 // A sink may hold what it gets; what is held longer than a frame is beyond any limit, but must not bring the run to a halt.

@@ -49,7 +49,7 @@ TEST_P(RandomGraphs, YieldWhatTheirDefinitionSaysUnderEverySchedule) {
     for (unsigned k = 0; k < kSettingsPerGraph; ++k) {
       const Setting chosen = setting(static_cast<int>((seed + 5 * k) % kSettings));
       SCOPED_TRACE(describe(chosen));
-      expect_same(run(checked, graph.inputs, scene, with_dumps(concurrent(chosen), graph)), want);
+      expect_same(run(checked, graph.inputs, scene, with_dumps(concurrent(chosen), graph), (seed + k) % 3 == 0), want);
     }
     if (HasFailure()) {
       ADD_FAILURE() << to_json(graph, testing::TempDir());

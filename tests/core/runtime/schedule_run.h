@@ -36,9 +36,11 @@ class PatternSource : public FrameSource {
  public:
   PatternSource(std::vector<TestInput> inputs, Scene scene) : inputs_(std::move(inputs)), scene_(std::move(scene)) {}
   std::function<void(std::string_view input, std::int64_t frame)> on_read;  ///< called first; may throw
+  bool keeps_busy = false;                                                  ///< see FrameSource::uses_processor
 
   std::optional<Shape> shape(std::string_view input) override;
   Item read(std::string_view input, std::int64_t frame, BufferPool& pool) override;
+  bool uses_processor() const override { return keeps_busy; }
 
  private:
   std::vector<TestInput> inputs_;
@@ -62,8 +64,10 @@ class RecordingSink : public FrameSink {
   explicit RecordingSink(std::set<std::int64_t> unwritable = {}) : unwritable_(std::move(unwritable)) {}
   std::function<void(std::string_view output, std::int64_t frame)> on_write;  ///< called first; may throw
   std::function<void(std::string_view output, std::int64_t frame)> on_written;
+  bool keeps_busy = false;  ///< see FrameSink::uses_processor
 
   void write(std::string_view output, std::int64_t frame, const Item& item) override;
+  bool uses_processor() const override { return keeps_busy; }
   Pictures take();
 
  private:
@@ -91,9 +95,10 @@ std::string describe(const Setting& setting);
 SessionOptions concurrent(const Setting& setting);
 SessionOptions serial();
 
-/// Runs over all frames of the scene; every block of the pool is filled with NaN before it is used.
+/// Runs over all frames of the scene; every block of the pool is filled with NaN before it is used. `keeps_busy`: whether
+/// reading and writing count among the threads.
 Outcome run(const std::shared_ptr<const Graph>& graph, const std::vector<TestInput>& inputs, const Scene& scene,
-            SessionOptions options);
+            SessionOptions options, bool keeps_busy = false);
 /// Runs serially, then in all 16 settings, and expects the same.
 void expect_same_in_all_settings(const std::shared_ptr<const Graph>& graph, const std::vector<TestInput>& inputs,
                                  const Scene& scene, const std::vector<std::string>& dumps = {});
