@@ -31,10 +31,8 @@ struct Memory {
   std::size_t resident = 0;
 };
 
-class Soak : public testing::TestWithParam<int> {};
-
-TEST_P(Soak, NeitherGrowsNorStalls) {
-  const auto graph = test_graph(R"({"quell": 1, "inputs": {"color": "color"},
+std::shared_ptr<const Graph> graph_with_loops() {
+  return test_graph(R"({"quell": 1, "inputs": {"color": "color"},
     "nodes": {
       "soft": {"pass": "soften", "in": {"color": "color"}},
       "fast": {"pass": "stir", "params": {"in_place": true},
@@ -44,9 +42,22 @@ TEST_P(Soak, NeitherGrowsNorStalls) {
       "parts": {"pass": "parts", "in": {"color": "turned.color", "items": ["soft.color", "slow.color"]}},
       "last": {"pass": "stir", "in": {"color": "parts.items[0]", "other": "parts.items[1]"}}},
     "outputs": {"last": "last.color", "turned": "turned.color"}})");
-  std::vector<std::int64_t> frames(kFrames), told;
+}
+
+std::vector<std::int64_t> many_frames() {
+  std::vector<std::int64_t> frames(kFrames);
   std::iota(frames.begin(), frames.end(), 1);
-  PatternSource source({{"color"}}, {.frames = frames, .size = {16, 12}});
+  return frames;
+}
+
+constexpr Size kSize{16, 12};
+
+class Soak : public testing::TestWithParam<int> {};
+
+TEST_P(Soak, NeitherGrowsNorStalls) {
+  const std::vector<std::int64_t> frames = many_frames();
+  std::vector<std::int64_t> told;
+  PatternSource source({{"color"}}, {.frames = frames, .size = kSize});
   RecordingSink sink;
   Memory warm;
   SessionOptions options = concurrent({4, GetParam()});
@@ -57,7 +68,7 @@ TEST_P(Soak, NeitherGrowsNorStalls) {
     sink.take();
     if (report.frame == kWarm) warm = {running->pool().usage(), resident_bytes()};
   };
-  Session session(graph, options);
+  Session session(graph_with_loops(), options);
   running = &session;
   session.run(frames, source, sink);
   EXPECT_EQ(told, frames);
@@ -75,6 +86,26 @@ TEST_P(Soak, NeitherGrowsNorStalls) {
   EXPECT_LE(end.pool.peak, 3 * most_in_use);
   EXPECT_EQ(end.pool.in_use + end.pool.idle, end.pool.peak);
   EXPECT_LT(end.resident, warm.resident + (std::size_t{64} << 20));
+}
+
+TEST_P(Soak, WithinATightLimitNeitherGrowsNorStalls) {
+  const std::vector<std::int64_t> frames = many_frames();
+  PatternSource source({{"color"}}, {.frames = frames, .size = kSize});
+  const auto graph = graph_with_loops();
+  const Window window = choose_window(make_plan(graph, {{"color", source.shape("color")}}), 4, 1, 0);
+  SessionOptions options = concurrent({4, GetParam()});
+  options.memory = window.fixed_bytes + 5 * window.bytes_per_frame / 2;
+  std::vector<std::int64_t> told;
+  RecordingSink sink;
+  options.on_frame = [&](const FrameReport& report) {
+    EXPECT_TRUE(report.ok) << report.error;
+    told.push_back(report.frame);
+    sink.take();
+  };
+  Session session(graph, options);
+  session.run(frames, source, sink);
+  EXPECT_EQ(told, frames);
+  EXPECT_LE(session.pool().usage().peak, options.memory);
 }
 
 INSTANTIATE_TEST_SUITE_P(Windows, Soak, testing::Values(1, 4, 8));
