@@ -4,6 +4,7 @@
 
 #include "quell/runtime/failure.h"
 #include "quell/runtime/input_reader.h"
+#include "quell/runtime/single_frame.h"
 
 namespace quell {
 namespace {
@@ -55,18 +56,6 @@ class SerialRun {
 };
 
 }  // namespace
-
-void compute_steps(Lane& lane, const PlanState& state) {
-  for (int step = 0; step < static_cast<int>(state.wiring.steps.size()); ++step) {
-    if (lane.is_lost(step)) {
-      lane.skip(step);
-      continue;
-    }
-    lane.fetch(step);
-    lane.run(step);
-    lane.publish(step);
-  }
-}
 
 std::vector<FrameReport> run_serially(SessionState& session, const std::vector<std::int64_t>& frames, FrameSource& source,
                                       FrameSink& sink) {

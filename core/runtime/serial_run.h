@@ -12,7 +12,4 @@ namespace quell {
 std::vector<FrameReport> run_serially(SessionState& session, const std::vector<std::int64_t>& frames, FrameSource& source,
                                       FrameSink& sink);
 
-/// Runs every step of a frame that has begun. Throws Cancelled.
-void compute_steps(Lane& lane, const PlanState& state);
-
 }  // namespace quell

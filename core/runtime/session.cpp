@@ -5,6 +5,7 @@
 
 #include "quell/runtime/scheduler.h"
 #include "quell/runtime/serial_run.h"
+#include "quell/runtime/single_frame.h"
 #include "quell/text/diagnostic.h"
 
 namespace quell {
@@ -49,8 +50,7 @@ std::vector<FrameReport> Session::run(const std::vector<std::int64_t>& frames, F
 
 std::map<std::string, Item> Session::push(std::int64_t frame, const std::map<std::string, Item>& inputs) {
   SessionState& s = *state_;
-  FrameInputs begin;
-  begin.items.resize(s.graph->inputs.size());
+  std::vector<Item> items(s.graph->inputs.size());
   std::vector<std::string> known;
   for (const GraphInput& input : s.graph->inputs) known.push_back(input.name);
   for (const auto& [name, item] : inputs) {
@@ -58,7 +58,7 @@ std::map<std::string, Item> Session::push(std::int64_t frame, const std::map<std
     if (place == known.end())
       throw Error(Fault::usage, s.graph->name,
                   "the graph has no input '" + name + "'" + did_you_mean(name, known) + "; it has " + list_names(known, "and"));
-    Item& clean = begin.items[static_cast<std::size_t>(place - known.begin())] = item;
+    Item& clean = items[static_cast<std::size_t>(place - known.begin())] = item;
     const std::int64_t replaced = clean ? sanitize(clean, s.executor, s.pool) : 0;
     if (replaced > 0 && s.options.log)
       s.options.log(QUELL_LOG_WARNING, "frame " + std::to_string(frame) + ": " + describe({name, clean.type(), replaced}));
@@ -67,24 +67,8 @@ std::map<std::string, Item> Session::push(std::int64_t frame, const std::map<std
   if (!s.running->wiring.ahead.empty())
     throw Error(Fault::usage, known[static_cast<std::size_t>(s.running->wiring.ahead.front().input)],
                 "the graph looks ahead on this input, which needs a whole sequence: use Session::run");
-  s.running->history.forget_from(frame);
-  Lane& lane = s.lane(0);
-  lane.begin(frame, std::move(begin));
-  try {
-    compute_steps(lane, *s.running);
-  } catch (const Cancelled&) {
-    lane.clear();
-    s.running->history.forget_from(frame);
-    throw;
-  }
-  s.running->history.advance(frame);
-  FrameReport report;
-  report_nodes(report, lane);
   std::map<std::string, Item> outputs;
-  for (std::size_t i = 0; report.ok && i < s.running->wiring.results.size(); ++i)
-    outputs[s.running->wiring.results[i].first] = lane.result(i);
-  lane.clear();
-  if (!report.ok) throw Error(Fault::frame, "", report.error);
+  for (auto& [name, item] : compute_frame(s.lane(0), *s.running, frame, std::move(items))) outputs[name] = std::move(item);
   return outputs;
 }
 

@@ -5,7 +5,7 @@
 
 #include "quell/graph/plan.h"
 #include "quell/plugin/registry.h"
-#include "quell/runtime/frame_run.h"
+#include "quell/runtime/single_frame.h"
 #include "quell/testing/pass_graph.h"
 #include "quell/text/diagnostic.h"
 #include "quell/text/json.h"
@@ -47,8 +47,9 @@ struct PassTest::State {
   std::unique_ptr<Executor> executor;
   HostServices services;
   std::string planned_for;
-  std::unique_ptr<FrameRun> frame_run;
-  FrameResult result;
+  std::unique_ptr<PlanState> running;
+  std::unique_ptr<Lane> lane;
+  std::vector<std::pair<std::string, Item>> outputs;
 
   explicit State(const quell_pass_desc& pass) : graph{pass} {
     const quell_pass_desc* passes[] = {&pass};
@@ -68,25 +69,26 @@ struct PassTest::State {
   }
 
   // The pass alone makes a graph of one node, so that everything a graph's user meets is met here too.
-  FrameRun& prepare() {
+  const Plan& prepare() {
     const std::string text = graph.text();
     const std::string key = text + shape_text();
-    if (frame_run && key == planned_for) return *frame_run;
+    if (running && key == planned_for) return running->plan;
     const auto source = std::make_shared<const SourceText>(SourceText{graph.desc.id, text});
     InputShapes shapes;
     for (const auto& [port, items] : graph.inputs)
       for (std::size_t i = 0; i < items.size(); ++i) shapes[item_name(port, i)] = shape_of(items[i]);
     Plan plan = make_plan(parse_graph(source, registry), shapes);
-    frame_run.reset();
+    lane.reset();
     executor = make_executor(thread_count);
     services.executor = executor.get();
-    frame_run = std::make_unique<FrameRun>(std::move(plan), services, pool);
+    running = std::make_unique<PlanState>(std::move(plan), 1, pool);
+    lane = std::make_unique<Lane>(*running, services, pool, nullptr);
     planned_for = key;
-    return *frame_run;
+    return running->plan;
   }
 
   const PlannedNode& planned() {
-    const auto& nodes = prepare().plan().nodes;
+    const auto& nodes = prepare().nodes;
     if (nodes.empty()) throw Error(Fault::usage, graph.desc.id, "the pass does not run on these inputs");
     return nodes.front();
   }
@@ -134,7 +136,7 @@ PassTest& PassTest::feed_back(std::string_view output, std::string_view input) {
 
 PassTest& PassTest::threads(int count) {
   state_->thread_count = count;
-  state_->frame_run.reset();
+  state_->running.reset();
   return *this;
 }
 PassTest& PassTest::grain(int rows) {
@@ -157,23 +159,23 @@ PassTest& PassTest::next_frame(std::int64_t number) {
 
 void PassTest::run() {
   State& s = *state_;
-  FrameRun& frame_run = s.prepare();
-  s.result = {};
+  const Plan& plan = s.prepare();
+  s.outputs.clear();
   std::vector<Item> items;
-  for (const GraphInput& input : frame_run.plan().graph->inputs) {
+  for (const GraphInput& input : plan.graph->inputs) {
     const std::size_t split = input.name.rfind('_');
     Item& item = s.graph.inputs.find(input.name.substr(0, split))->second[std::stoul(input.name.substr(split + 1))];
     items.push_back(s.move_inputs ? std::move(item) : item);
   }
   if (s.move_inputs) s.graph.inputs.clear();
-  s.result = frame_run.compute(s.next_frame++, std::move(items), {});
+  s.outputs = compute_frame(*s.lane, *s.running, s.next_frame++, std::move(items));
 }
 
 const Item& PassTest::output_item(std::string_view port, int item) const {
   state_->graph.output_index(port);
   const std::string name = item_name(port, static_cast<std::size_t>(item));
-  const auto found = std::ranges::find(state_->result.outputs, name, &std::pair<std::string, Item>::first);
-  if (found == state_->result.outputs.end())
+  const auto found = std::ranges::find(state_->outputs, name, &std::pair<std::string, Item>::first);
+  if (found == state_->outputs.end())
     throw Error(Fault::usage, state_->graph.desc.id, "no output '" + name + "'; was the pass run?");
   return found->second;
 }
