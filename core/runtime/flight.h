@@ -23,7 +23,7 @@ struct FrameStep {
 /// earliest frame on top.
 ///
 /// A frame in flight is charged what it takes when its nodes run in the plan's order. A node that runs ahead of that order is
-/// charged for what it writes, too, until the frame has caught up with it. The sum never passes the limit; the first unfinished
+/// charged for what it writes, too, until the frame has caught up with it. The sum stays within the limit; the first unfinished
 /// node of a frame is never refused, so that nothing can stall.
 ///
 /// Frames are admitted, begun and retired in order: retired() <= begun() <= admitted(). Not thread-safe, takes no time.
@@ -45,9 +45,9 @@ class Flight {
   void admit();
   /// The nodes of the next frame wait from now on; nobody has to wait for one that cannot be read.
   void begin(bool is_readable);
-  bool has_ready() const { return !ready_.empty(); }
-  std::size_t ready() const { return ready_.size(); }
-  /// The best node that there is memory for; it is charged and counts as running.
+  /// How many nodes may run now; more than there is memory for, perhaps, but 0 only when there is none.
+  std::size_t ready();
+  /// The first of them that there is memory for; it is charged and counts as running.
   std::optional<FrameStep> take();
   /// True when it was the last node of its frame.
   bool complete(const FrameStep& node);
@@ -61,13 +61,16 @@ class Flight {
     std::size_t charge = 0;           // for the whole frame
     std::vector<std::size_t> extras;  // for each step that ran ahead of the plan's order
     std::vector<int> waits;           // of each step: how many others it waits for
+    std::vector<char> ready;          // each step: waits for nothing but its turn
     std::vector<char> done;           // each step
     std::size_t first_undone = 0, undone = 0;
   };
-  InFlight& at(std::size_t index) { return in_flight_[place(index)]; }
+  InFlight& flying(std::size_t index) { return in_flight_[place(index)]; }
   bool is_undone(std::int64_t frame, int step);
   void wake(std::size_t index, int step);
-  bool charge_for(const FrameStep& node);
+  std::size_t price(const FrameStep& node);
+  std::optional<FrameStep> best();
+  std::optional<FrameStep> next_in_order();
   void release(std::size_t& charge);
 
   const std::vector<std::int64_t>& frames_;
@@ -78,7 +81,8 @@ class Flight {
   std::size_t charged_ = 0;
   std::vector<InFlight> in_flight_;  // a ring
   std::size_t retired_ = 0, begun_ = 0, admitted_ = 0;
-  std::vector<FrameStep> ready_, refused_;  // a heap; what there is no memory for at the moment
+  std::vector<FrameStep> heap_;  // of what is ready, and some that have been taken out of turn
+  std::size_t ready_ = 0;        // nodes
 };
 
 }  // namespace quell

@@ -34,11 +34,12 @@ class History {
   }
   /// Lets go of what frames after `frame` cannot reach.
   void advance(std::int64_t frame) {
-    for (Line& line : lines_) std::erase_if(line.items, [&](const Kept& kept) { return kept.first + line.reach <= frame; });
+    for (Line& line : lines_)
+      line.items.erase(line.items.begin(), std::ranges::upper_bound(line.items, frame - line.reach, {}, &Kept::first));
   }
   /// Lets go of `frame` and all after it, which will be computed again, or were not finished.
   void forget_from(std::int64_t frame) {
-    for (Line& line : lines_) std::erase_if(line.items, [&](const Kept& kept) { return kept.first >= frame; });
+    for (Line& line : lines_) line.items.erase(std::ranges::lower_bound(line.items, frame, {}, &Kept::first), line.items.end());
   }
 
  private:

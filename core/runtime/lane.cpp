@@ -137,9 +137,11 @@ int Lane::failed_step() const {
 
 const std::string& Lane::name(int step) const { return state_.plan.graph->nodes[at(state_.plan.nodes[at(step)].node)].name; }
 
+void Lane::drop_ahead() { std::ranges::fill(ahead_, Item()); }
+
 void Lane::clear() {
   std::ranges::fill(values_, Item());
-  std::ranges::fill(ahead_, Item());
+  drop_ahead();
   for (std::size_t step = 0; step < inputs_.size(); ++step) drop_inputs(static_cast<int>(step));
 }
 

@@ -46,6 +46,8 @@ class Lane {
   const std::vector<double>& node_seconds() const { return seconds_; }
   /// Of Wiring::results, when all steps are through.
   const Item& result(std::size_t index) const { return values_[static_cast<std::size_t>(state_.wiring.results[index].second)]; }
+  /// Lets go of what lies ahead, when all steps are through.
+  void drop_ahead();
   /// Lets go of all values.
   void clear();
 

@@ -23,6 +23,8 @@ Scheduler::Scheduler(SessionState& session, const std::vector<std::int64_t>& fra
       frames_(frames),
       source_(source),
       sink_(sink),
+      reading_counts_(source.uses_processor()),
+      writing_counts_(sink.uses_processor()),
       reader_(*session.graph, source, frames, session.pool, session.options.trace),
       flight_(frames),
       end_(frames.size()) {
@@ -31,15 +33,16 @@ Scheduler::Scheduler(SessionState& session, const std::vector<std::int64_t>& fra
 }
 
 std::vector<FrameReport> Scheduler::run() {
-  session_.executor.budget().on_free([this] {
-    const Lock lock(mutex_);
-    start_drivers(flight_.ready());
-  });
-  for (int i = 0; i < file_threads(session_.executor.slots()); ++i) file_threads_.emplace_back([this] { serve_files(); });
   try {
+    session_.executor.budget().on_free([this] {
+      const Lock lock(mutex_);
+      start_drivers(flight_.ready());
+    });
+    for (int i = 0; i < file_threads(session_.executor.slots()); ++i) file_threads_.emplace_back([this] { serve_files(); });
     Lock lock(mutex_);
     advance();
     wait_until_finished(lock);
+    if (failure_) std::rethrow_exception(failure_);
     collect_rest();
     tell_reports(lock);
   } catch (...) {  // from the session's callbacks
@@ -55,13 +58,14 @@ std::vector<FrameReport> Scheduler::run() {
 void Scheduler::wait_until_finished(Lock& lock) {
   while (!is_finished()) {
     const auto is_awaited = [&] { return is_finished() || told_ < reports_.size(); };
-    if (!session_.options.cancelled) {
-      caller_wakes_.wait(lock, is_awaited);
-    } else if (!caller_wakes_.wait_for(lock, kBetweenQuestions, is_awaited)) {
+    if (session_.options.cancelled) {
+      caller_wakes_.wait_for(lock, kBetweenQuestions, is_awaited);
       lock.unlock();
       const bool cancelled = session_.cancelled();
       lock.lock();
       stopped_ = stopped_ || cancelled;
+    } else {
+      caller_wakes_.wait(lock, is_awaited);
     }
     tell_reports(lock);
   }
@@ -92,7 +96,7 @@ void Scheduler::shut_down() {
   files_wake_.notify_all();
   file_threads_.clear();
   session_.executor.budget().on_free({});
-  for (std::size_t index = flight_.retired(); index < flight_.admitted(); ++index) lane(index).clear();
+  for (std::size_t index = flight_.retired(); index < flight_.begun(); ++index) lane(index).clear();
   if (flight_.retired() < frames_.size()) session_.running->history.forget_from(frames_[flight_.retired()]);
 }
 
@@ -114,21 +118,26 @@ void Scheduler::start_drivers(std::size_t nodes) {
 }
 
 void Scheduler::drive() {
-  ThreadBudget& budget = session_.executor.budget();
   Lock lock(mutex_);
   --idle_drivers_;
-  while (!stopped_ && !budget.is_wanted()) {
-    const std::optional<FrameStep> node = flight_.take();
-    if (!node) break;
-    compute(*node, lock);
-    if (flight_.ready() > 1) start_drivers(flight_.ready() - 1);
-  }
-  if (budget.is_wanted()) start_drivers(flight_.ready());  // which will be told when there is room again
+  try {
+    compute_nodes(lock);
+  } catch (...) { fail(lock); }
   lock.unlock();
-  budget.give_back();
+  session_.executor.budget().give_back();
   lock.lock();
   --drivers_;
   if (drivers_ == 0) caller_wakes_.notify_all();
+}
+
+void Scheduler::compute_nodes(Lock& lock) {
+  while (!stopped_) {
+    if (session_.executor.budget().is_wanted()) return start_drivers(flight_.ready());  // when there is room again
+    const std::optional<FrameStep> node = flight_.take();
+    if (!node) return;
+    compute(*node, lock);
+    if (const std::size_t more = flight_.ready(); more > 1) start_drivers(more - 1);
+  }
 }
 
 void Scheduler::compute(const FrameStep& node, Lock& lock) {
@@ -149,9 +158,9 @@ void Scheduler::compute(const FrameStep& node, Lock& lock) {
     }
     at.publish(node.step);
   }
-  if (!flight_.complete(node)) return;
-  end_computation(node.index);
-  advance();
+  const bool last = flight_.complete(node);
+  if (last) end_computation(node.index);
+  if (last || flight_.may_admit()) advance();
 }
 
 // ---- file threads ----
@@ -162,16 +171,23 @@ void Scheduler::serve_files() {
     files_wake_.wait(lock, [&] { return closing_ || can_read() || next_write(); });
     if (closing_) return;
     ++busy_file_threads_;
-    if (const auto index = next_write())  // first, because it makes room
-      write_one(*index, lock);
-    else
-      read_one(lock);
+    try {
+      serve_one(lock);
+      advance();
+    } catch (...) { fail(lock); }
     --busy_file_threads_;
-    advance();
+    if (is_finished()) caller_wakes_.notify_all();
   }
 }
 
-bool Scheduler::can_read() { return !stopped_ && reader_.has_next(); }
+void Scheduler::serve_one(Lock& lock) {
+  if (const auto index = next_write())  // first, because it makes room
+    write_one(*index, lock);
+  else
+    read_one(lock);
+}
+
+bool Scheduler::can_read() { return !stopped_ && flight_.retired() < end_ && reader_.has_next(); }
 
 std::optional<std::size_t> Scheduler::next_write() {
   if (stopped_) return std::nullopt;
@@ -185,10 +201,9 @@ std::optional<std::size_t> Scheduler::next_write() {
 void Scheduler::read_one(Lock& lock) {
   const InputReader::Key key = *reader_.next();
   lock.unlock();
-  const bool counts = source_.uses_processor();
-  if (counts) session_.executor.budget().take();
+  if (reading_counts_) session_.executor.budget().take();
   InputReader::Read read = reader_.read(key, alone_);
-  if (counts) session_.executor.budget().give_back();
+  if (reading_counts_) session_.executor.budget().give_back();
   lock.lock();
   reader_.put(key, std::move(read));
 }
@@ -198,10 +213,9 @@ void Scheduler::write_one(std::size_t index, Lock& lock) {
   Lane& at = lane(index);
   written.phase = Phase::writing;
   lock.unlock();
-  const bool counts = sink_.uses_processor();
-  if (counts) session_.executor.budget().take();
+  if (writing_counts_) session_.executor.budget().take();
   write_results(written.report, at, session_.running->wiring, sink_, session_.pool, session_.options.trace);
-  if (counts) session_.executor.budget().give_back();
+  if (writing_counts_) session_.executor.budget().give_back();
   lock.lock();
   end_frame(index);
 }
@@ -229,29 +243,28 @@ bool Scheduler::begin_next() {
   const std::size_t index = flight_.begun();
   if (stopped_ || index >= std::min(flight_.admitted(), end_) || !reader_.is_ready(frames_[index], *session_.running))
     return false;
-  FrameReport& report = frame(index).report;
-  report.error = reader_.error(frames_[index]);
-  if (report.error.empty()) {
+  frame(index).report.error = reader_.error(frames_[index]);
+  if (frame(index).report.error.empty()) {
     const InputShapes shapes = reader_.shapes(frames_[index], session_.planned_for);
     if (session_.needs_plan(shapes)) {
       if (flight_.retired() < index) return false;  // frames of the former size must be through
       if (plan_anew(shapes)) return true;
     }
   }
-  FrameReport& told = frame(index).report;  // which another plan may have moved
-  told.ok = told.error.empty();
-  FrameInputs inputs = reader_.take(told, *session_.running);
-  if (told.ok) lane(index).begin(frames_[index], std::move(inputs));
-  flight_.begin(told.ok);
+  FrameReport& report = frame(index).report;
+  report.ok = report.error.empty();
+  FrameInputs inputs = reader_.take(report, *session_.running);
+  if (report.ok) lane(index).begin(frames_[index], std::move(inputs));
+  flight_.begin(report.ok);
   frame(index).phase = Phase::computing;
-  if (!told.ok)
+  if (!report.ok)
     end_frame(index);
   else if (session_.running->wiring.steps.empty())
     end_computation(index);
   return true;
 }
 
-// True when it succeeded; the frame, which the new plan may want more of, has not begun yet.
+// True when it succeeded; the frame has not begun yet.
 bool Scheduler::plan_anew(const InputShapes& shapes) {
   const std::size_t first = flight_.begun();
   try {
@@ -275,6 +288,7 @@ bool Scheduler::plan_anew(const InputShapes& shapes) {
 
 void Scheduler::end_computation(std::size_t index) {
   frame(index).phase = Phase::computed;
+  lane(index).drop_ahead();
   report_nodes(frame(index).report, lane(index));
   if (frame(index).report.ok)
     flight_.hold(index, true);
@@ -289,6 +303,12 @@ void Scheduler::end_frame(std::size_t index) {
   if (!ended.report.ok && session_.options.stop_on_error) end_ = std::min(end_, index + 1);
   lane(index).clear();
   flight_.hold(index, false);
+}
+
+void Scheduler::fail(Lock& lock) {
+  if (!lock.owns_lock()) lock.lock();
+  if (!failure_) failure_ = std::current_exception();
+  stopped_ = true;
 }
 
 bool Scheduler::retire_next() {

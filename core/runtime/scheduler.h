@@ -5,6 +5,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -17,8 +18,8 @@
 
 namespace quell {
 
-/// Three kinds of threads share one lock, which nobody holds while a pass, a source or a sink is at work: drivers, tasks on the
-/// executor's workers, compute; file threads read and write; the caller of run() waits, and tells of frames that have ended.
+/// Three kinds of threads share one lock, which nobody holds while a node runs or a source or sink is at work: drivers, tasks on
+/// the executor's workers, compute; file threads read and write; the caller of run() waits, and tells of frames that have ended.
 class Scheduler {
  public:
   /// For frames that ascend, when a first plan has been made.
@@ -43,11 +44,13 @@ class Scheduler {
 
   // Drivers.
   void drive();
+  void compute_nodes(Lock& lock);
   void compute(const FrameStep& node, Lock& lock);
   void start_drivers(std::size_t nodes);
 
   // File threads.
   void serve_files();
+  void serve_one(Lock& lock);
   void read_one(Lock& lock);
   void write_one(std::size_t index, Lock& lock);
   bool can_read();
@@ -61,6 +64,7 @@ class Scheduler {
   bool plan_anew(const InputShapes& shapes);
   void end_computation(std::size_t index);
   void end_frame(std::size_t index);
+  void fail(Lock& lock);
   bool is_finished() const;
   Frame& frame(std::size_t index) { return in_flight_[flight_.place(index)]; }
   Lane& lane(std::size_t index) { return session_.lane(flight_.place(index)); }
@@ -69,7 +73,8 @@ class Scheduler {
   const std::vector<std::int64_t>& frames_;
   FrameSource& source_;
   FrameSink& sink_;
-  Executor alone_{1};  // for file threads, each of which counts as one thread
+  const bool reading_counts_, writing_counts_;  // as threads at work
+  Executor alone_{1, ThreadSource::threads};    // for file threads: loops inline
   const std::function<void()> drive_ = [this] { drive(); };
 
   std::mutex mutex_;  // guards what follows, the lanes' tables and the history
@@ -80,8 +85,9 @@ class Scheduler {
   std::size_t end_;                             // frames from here on are not wanted: there are none, or one before them failed
   std::size_t idle_drivers_ = 0, drivers_ = 0;  // those that have not begun; all
   int busy_file_threads_ = 0;
-  bool stopped_ = false;  // nothing new is begun
-  bool closing_ = false;  // file threads end
+  bool stopped_ = false;        // nothing new is begun
+  std::exception_ptr failure_;  // of the scheduler itself; ends the run
+  bool closing_ = false;        // file threads end
   std::vector<FrameReport> reports_;
   std::size_t told_ = 0;
   std::vector<std::jthread> file_threads_;  // last, so that they end before what they use

@@ -37,7 +37,7 @@ class SerialRun {
       while (const auto key = reader_.next()) reader_.put(*key, reader_.read(*key, session_.executor));
       const InputShapes shapes = reader_.shapes(frame, session_.planned_for);
       if (!reader_.error(frame).empty() || !session_.needs_plan(shapes)) return;
-      session_.plan_for(shapes);  // which may use other inputs, too
+      session_.plan_for(shapes);
     }
   }
 

@@ -11,7 +11,15 @@
 namespace quell {
 namespace {
 
+// So that a delay never leads past the ends of 64 bits.
+void require_possible(const Graph& graph, std::int64_t frame) {
+  constexpr std::int64_t kFarthest = std::int64_t{1} << 62;
+  if (frame < -kFarthest || frame > kFarthest)
+    throw Error(Fault::usage, graph.name, "frame " + std::to_string(frame) + " is too far off; numbers reach to 2^62 either way");
+}
+
 void require_ascending(const Graph& graph, const std::vector<std::int64_t>& frames) {
+  for (const std::int64_t frame : frames) require_possible(graph, frame);
   const auto turn = std::ranges::adjacent_find(frames, std::greater_equal<>());
   if (turn == frames.end()) return;
   throw Error(Fault::usage, graph.name,
@@ -19,10 +27,10 @@ void require_ascending(const Graph& graph, const std::vector<std::int64_t>& fram
                   "; frames of a run have ascending numbers, each once");
 }
 
-InputShapes shapes_of(const std::map<std::string, Item>& inputs) {
+InputShapes shapes_of(const Graph& graph, const std::vector<Item>& items) {
   InputShapes shapes;
-  for (const auto& [name, item] : inputs)
-    if (item) shapes[name] = shape_of(item);
+  for (std::size_t i = 0; i < items.size(); ++i)
+    shapes[graph.inputs[i].name] = items[i] ? std::optional(shape_of(items[i])) : std::nullopt;
   return shapes;
 }
 
@@ -50,6 +58,7 @@ std::vector<FrameReport> Session::run(const std::vector<std::int64_t>& frames, F
 
 std::map<std::string, Item> Session::push(std::int64_t frame, const std::map<std::string, Item>& inputs) {
   SessionState& s = *state_;
+  require_possible(*s.graph, frame);
   std::vector<Item> items(s.graph->inputs.size());
   std::vector<std::string> known;
   for (const GraphInput& input : s.graph->inputs) known.push_back(input.name);
@@ -63,7 +72,7 @@ std::map<std::string, Item> Session::push(std::int64_t frame, const std::map<std
     if (replaced > 0 && s.options.log)
       s.options.log(QUELL_LOG_WARNING, "frame " + std::to_string(frame) + ": " + describe({name, clean.type(), replaced}));
   }
-  s.plan_for(shapes_of(inputs));
+  s.plan_for(shapes_of(*s.graph, items));
   if (!s.running->wiring.ahead.empty())
     throw Error(Fault::usage, known[static_cast<std::size_t>(s.running->wiring.ahead.front().input)],
                 "the graph looks ahead on this input, which needs a whole sequence: use Session::run");

@@ -59,9 +59,10 @@ class Session {
 
   /// Computes the frames, whose numbers ascend. A frame that cannot be read, computed or written is reported and harms no other:
   /// what its nodes yielded is history for those that follow, what a failed node, or one that needs it, should have yielded
-  /// counts as absent. Returns a report for each frame, in order, or fewer when cancelled or stopped. Throws Error(usage) when
-  /// the graph cannot run on what the source has or the numbers do not ascend, Error(memory) when not even one frame fits the
-  /// limit.
+  /// counts as absent. Returns a report for each frame, in order; when stopped, up to the one that failed; when cancelled, for
+  /// those that were finished, which may leave gaps. Not from within a oneTBB task, whose threads it waits for. Throws
+  /// Error(usage) when the graph cannot run on what the source has or the numbers do not ascend, Error(memory) when not even one
+  /// frame fits the limit.
   std::vector<FrameReport> run(const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink);
 
   /// In memory: computes one frame from its inputs by name, and returns the outputs and dumps by name. Throws Error(usage) when
@@ -69,7 +70,7 @@ class Session {
   /// run().
   std::map<std::string, Item> push(std::int64_t frame, const std::map<std::string, Item>& inputs);
 
-  /// Null until the first frame told the sizes.
+  /// Null until the first frame told the sizes. Not while run() is at work.
   const Plan* plan() const;
   BufferPool& pool();
 

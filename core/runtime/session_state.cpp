@@ -33,9 +33,9 @@ void SessionState::plan_for(const InputShapes& shapes) {
   if (!needs_plan(shapes)) return;
   Plan plan = make_plan(graph, shapes, options.dumps);
   const Window chosen = choose_window(plan, static_cast<int>(executor.slots()), options.frames_in_flight, options.memory);
+  auto next = std::make_unique<PlanState>(std::move(plan), chosen.frames, pool);
   if (running && options.log) options.log(QUELL_LOG_INFO, "the size of the inputs changed: history starts anew");
   pool.set_limit(chosen.memory);
-  auto next = std::make_unique<PlanState>(std::move(plan), chosen.frames, pool);
   lanes_.clear();  // they refer to the former plan
   running = std::move(next);
   window = chosen;

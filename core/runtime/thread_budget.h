@@ -24,10 +24,15 @@ class ThreadBudget {
   }
   /// Waits for one. Goes before try_take: what is read and written is bounded by the frames in flight, and they wait for it.
   void take() {
-    std::unique_lock lock(mutex_);
-    ++waiting_;
-    came_back_.wait(lock, [&] { return free_ > 0; });
-    --waiting_, --free_;
+    bool tell = false;
+    {
+      std::unique_lock lock(mutex_);
+      ++waiting_;
+      came_back_.wait(lock, [&] { return free_ > 0; });
+      --waiting_, --free_;
+      if (waiting_ == 0 && free_ > 0) tell = std::exchange(starving_, false);  // for those who were refused meanwhile
+    }
+    if (tell && on_free_) on_free_();
   }
   void give_back() {
     bool tell = false;

@@ -110,9 +110,9 @@ void Trace::memory(const BufferPool::Usage& usage) {
   if (s.finished || (usage.in_use == s.last.in_use && usage.idle == s.last.idle)) return;
   s.last = usage;
   s.out << ",\n"
-        << R"({"ph":"C","pid":1,"ts":)" << s.microseconds(Clock::now() - s.start) << R"(,"name":"memory, MiB",
-      "args" : {"in use":)"
-        << mebibytes(usage.in_use) << R"(,"idle":)" << mebibytes(usage.idle) << "}}";
+        << R"({"ph":"C","pid":1,"ts":)" << s.microseconds(Clock::now() - s.start);
+  s.out << R"(,"name":"memory, MiB",)";
+  s.out << R"("args":{"in use":)" << mebibytes(usage.in_use) << R"(,"idle":)" << mebibytes(usage.idle) << "}}";
 }
 
 void Trace::finish() {

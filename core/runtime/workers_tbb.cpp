@@ -3,22 +3,30 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
-#include <optional>
+#include <mutex>
 
 #include "quell/runtime/workers.h"
 
 namespace quell {
 namespace {
 
+// oneTBB counts the main thread, and has one worker less than there are processors. What allows more holds for the whole process,
+// and of several such controls the smallest: so there is one, which only grows, and is never taken back.
+void allow_workers(std::size_t workers) {
+  static std::mutex mutex;
+  static tbb::global_control* control = nullptr;
+  static auto allowed = static_cast<std::size_t>(tbb::info::default_concurrency());
+  const std::scoped_lock lock(mutex);
+  if (workers + 1 <= allowed) return;
+  allowed = workers + 1;
+  delete control;
+  control = new tbb::global_control(tbb::global_control::max_allowed_parallelism, allowed);
+}
+
 class TbbWorkers final : public Workers {
  public:
   // No place is reserved for callers: spawned tasks need every worker, while the one who waits for them only sleeps.
-  explicit TbbWorkers(int threads) : arena_(threads, 0) {
-    // oneTBB has one worker less than processors, and counts the main thread. A limit holds for the whole process, other arenas
-    // included, so it is set only to allow more.
-    if (threads >= tbb::info::default_concurrency())
-      limit_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads) + 1);
-  }
+  explicit TbbWorkers(int threads) : arena_(threads, 0) { allow_workers(static_cast<std::size_t>(threads)); }
 
   void spawn(FunctionRef<void()> task) override { arena_.enqueue(task); }
 
@@ -37,7 +45,6 @@ class TbbWorkers final : public Workers {
   }
 
  private:
-  std::optional<tbb::global_control> limit_;
   tbb::task_arena arena_;
 };
 
