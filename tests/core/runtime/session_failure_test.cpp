@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <numeric>
 #include <thread>
 
 #include "tests/core/runtime/memory_stream.h"
@@ -125,6 +126,25 @@ TEST(Session, EndsInTheMiddleOfAFrameWhenCancelled) {
   EXPECT_EQ(reports.size(), 1U) << "the frame that was cut short is neither done nor failed";
   EXPECT_FALSE(sink.has("color", 2));
   EXPECT_FALSE(sink.has("color", 3));
+}
+
+// Frames that keep coming leave the caller of run() no idle moment, and this pass never asks.
+TEST(Session, EndsSoonAfterItIsCancelledWhileFramesKeepComing) {
+  MemorySource source;
+  source.paint = [](Image&, std::int64_t) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
+  MemorySink sink;
+  std::vector<std::int64_t> frames(2000);
+  std::iota(frames.begin(), frames.end(), 1);
+  const auto graph = test_graph(R"({"quell": 1, "inputs": {"color": "color"},
+    "nodes": {"count": {"pass": "count", "in": {"color": "color"}}}, "outputs": {"count": "count.count"}})");
+  std::atomic<bool> stop = false;
+  Session session(graph, {.threads = 2,
+                          .cancelled = [&] { return stop.load(); },
+                          .on_frame =
+                              [&](const FrameReport& report) {
+                                if (report.frame == 10) stop = true;
+                              }});
+  EXPECT_LT(session.run(frames, source, sink).size(), 500U);
 }
 
 TEST(Session, RefusesASourceThatLacksARequiredInput) {
