@@ -1,15 +1,19 @@
-// quell graph: how a graph would run.
+// quell graph: how a graph would run, in words or as a drawing.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "analyze.h"
 #include "arguments.h"
 #include "commands.h"
+#include "graphviz.h"
 #include "job.h"
+#include "quell/graph/plan_dot.h"
 #include "quell/text/diagnostic.h"
 #include "run_options.h"
+#include "text_output.h"
 
 namespace quell::app {
 namespace {
@@ -23,6 +27,8 @@ struct Arguments {
   std::string size = "1920x1080";
   std::vector<std::string> without;
   bool analyze = false;
+  bool dot = false, svg = false;
+  std::optional<std::string> out;
   std::string threads = "0";
 };
 
@@ -61,21 +67,53 @@ ExitCode describe_and_analyze(const std::shared_ptr<const Graph>& graph, const A
   return analyze_job(job, threads, console);
 }
 
+void check_drawing(const Arguments& arguments) {
+  if (arguments.dot && arguments.svg) throw Error(Fault::usage, "--svg", "it cannot stand beside --dot; choose one of them");
+  const bool draws = arguments.dot || arguments.svg;
+  if (draws && arguments.analyze)
+    throw Error(Fault::usage, "--analyze", "it cannot stand beside --dot and --svg; measure and draw one after the other");
+  if (arguments.out && !draws) throw Error(Fault::usage, "--out", "it is for drawings; add --dot or --svg");
+}
+
+void draw(const Plan& plan, const Arguments& arguments) {
+  const std::string dot = to_dot(plan);
+  if (arguments.svg)
+    write_output(draw_svg(dot), arguments.out, "<?xml ");
+  else
+    write_output(dot, arguments.out, "digraph ");
+}
+
 ExitCode run(const Arguments& arguments, Console& console) {
   set_verbosity(arguments.verbosity.verbosity());
+  check_drawing(arguments);
   const std::shared_ptr<const Graph> graph = load(arguments.graph);
   if (arguments.analyze) return describe_and_analyze(graph, arguments, console);
   const Plan plan = arguments.sequence.given()
                         ? prepare_job(graph, arguments.sequence).plan
                         : make_plan(graph, imagine_inputs(*graph, parse_size(arguments.size), arguments.without));
-  std::cout << describe(plan);
+  if (arguments.dot || arguments.svg)
+    draw(plan, arguments);
+  else
+    std::cout << describe(plan);
   return kOk;
+}
+
+void add_drawing_options(CLI::App& app, Arguments& arguments) {
+  app.add_flag("--dot", arguments.dot, "Print a drawing of the graph instead, in the language of Graphviz' dot.")
+      ->disable_flag_override()
+      ->group(kOutputGroup);
+  app.add_flag("--svg", arguments.svg, "Print a drawing of the graph instead, as SVG. Needs Graphviz' program dot.")
+      ->disable_flag_override()
+      ->group(kOutputGroup);
+  app.add_option("-o,--out", arguments.out, "Write the drawing to a file instead of printing it.")
+      ->type_name("FILE")
+      ->group(kOutputGroup);
 }
 
 }  // namespace
 
 Command add_graph(CLI::App& program) {
-  CLI::App& app = *program.add_subcommand("graph", "Show how a graph would run: order, images, memory, loops.");
+  CLI::App& app = *program.add_subcommand("graph", "Show how a graph would run: order, images, memory, loops. Or draw it.");
   app.footer(
       "Example:\n"
       "  quell graph games202 --size 3840x2160\n"
@@ -83,6 +121,8 @@ Command add_graph(CLI::App& program) {
       "size.\n"
       "  quell graph games202 shot/ --analyze\n"
       "measures, too, how long each node takes on the first 6 frames, and tells what bounds the frames per second.\n"
+      "  quell graph games202 --svg -o games202.svg\n"
+      "draws the graph: edges in the color of their type, those of another frame dashed, optional inputs hollow.\n"
       "\n"
       "Exit status: 0 all is well, 1 a frame failed while measuring, 2 usage or graph, 3 input, 4 plugin, 33 too little "
       "memory for a frame, 70 internal error, 75 interrupted.");
@@ -106,6 +146,7 @@ Command add_graph(CLI::App& program) {
            "Threads for --analyze; 0, the default, for as many as there are processors.")
       ->needs(analyze)
       ->group(kOtherGroup);
+  add_drawing_options(app, *arguments);
   add_options(app, arguments->verbosity);
   return {&app, [arguments](Console& console) { return run(*arguments, console); }};
 }

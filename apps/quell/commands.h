@@ -21,5 +21,6 @@ Command add_run(CLI::App& program);
 Command add_check(CLI::App& program);
 Command add_graph(CLI::App& program);
 Command add_passes(CLI::App& program);
+Command add_schema(CLI::App& program);
 
 }  // namespace quell::app

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "quell/graph/schema.h"
 #include "quell/text/diagnostic.h"
 
 namespace quell::app {
@@ -19,7 +20,8 @@ std::vector<std::string> shipped_graphs() {
   std::error_code error;
   for (auto it = fs::directory_iterator(shipped_graphs_folder(), error); !error && it != fs::directory_iterator();
        it.increment(error))
-    if (it->path().extension() == ".json" && it->is_regular_file()) names.push_back(it->path().stem().string());
+    if (it->path().extension() == ".json" && it->path().filename() != kSchemaFileName && it->is_regular_file())
+      names.push_back(it->path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
 }

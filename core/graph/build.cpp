@@ -92,7 +92,7 @@ class Builder {
   void add_node(const Leaf& leaf, std::shared_ptr<const PassInstance> instance) {
     Node& node = result_->nodes.emplace_back();
     node.name = leaf.name, node.pass = leaf.pass, node.instance = std::move(instance);
-    node.where = leaf.written->name.where;
+    node.where = leaf.written->name.where, node.doc = leaf.written->doc;
     node.inputs.resize(leaf.inputs.size());
     for (std::size_t i = 0; i < leaf.inputs.size(); ++i)
       for (const Arrival& arrival : leaf.inputs[i]) node.inputs[i].push_back(arrival.edge);

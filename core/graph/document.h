@@ -61,6 +61,7 @@ struct WrittenNode {
   std::vector<WrittenPort> in;
   std::vector<WrittenValue> params;
   Position params_where;  ///< of "params", or the node's name when it has none
+  std::string doc;
 };
 
 /// A graph-level parameter.

@@ -116,7 +116,7 @@ WrittenNode read_node(const JsonMember& member, Diagnostics& errors) {
   node.name = {member.key, member.where};
   node.params_where = member.where;
   const Fields fields(member.value, "a node", {"pass", "graph", "in", "params", "version", "doc"}, errors);
-  fields.text_or_empty("doc");
+  node.doc = fields.text_or_empty("doc");
   node.pass = fields.text("pass");
   node.graph = fields.text("graph");
   if (fields.any("pass") && fields.any("graph")) {
@@ -144,7 +144,7 @@ std::vector<WrittenNode> read_nodes(const Json& nodes, Diagnostics& errors) {
     if (expect(member.value, Json::Kind::object, "a node", errors))
       result.push_back(read_node(member, errors));
     else
-      result.push_back({{member.key, member.where}, {}, {}, {}, {}, {}, {}, {}});
+      result.push_back({{member.key, member.where}, {}, {}, {}, {}, {}, {}, {}, {}});
   }
   return result;
 }

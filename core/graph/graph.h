@@ -49,6 +49,7 @@ struct Node {
   std::shared_ptr<const PassInstance> instance;
   std::vector<std::vector<Edge>> inputs;  ///< for each input port of the pass; empty when unconnected
   Position where;
+  std::string doc = {};  ///< what the graph's author says of it
 };
 
 struct GraphInput {

@@ -152,6 +152,10 @@ std::optional<ParamValue> to_param(const quell_param_desc& desc, const Json& val
   return Converter(desc, context, errors).run(value);
 }
 
+std::string expected_value(const quell_param_desc& desc) {
+  return desc.is_array ? "a list of " + length_of(desc) + " values, each " + one_value(desc) : one_value(desc);
+}
+
 Json to_json_value(const quell_param_value& value, const Position& where) {
   Json list;
   list.kind = Json::Kind::array, list.where = where;

@@ -21,6 +21,9 @@ struct ValueContext {
 std::optional<ParamValue> to_param(const quell_param_desc& desc, const Json& value, const ValueContext& context,
                                    Diagnostics& errors);
 
+/// What a parameter takes, in words: "an integer from 0 to 64 (px)", "a list of 1 to 9 values, each a number".
+std::string expected_value(const quell_param_desc& desc);
+
 /// A value of the plugin interface as JSON, standing at `where`.
 Json to_json_value(const quell_param_value& value, const Position& where);
 

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -29,12 +30,17 @@ Pipe make_pipe(bool terminal) {
   return {ends[0], ends[1]};
 }
 
-/// The test's own environment, without what would change messages.
+/// The test's own environment, without what would change messages, and with `extra` in the place of what has the same name.
 std::vector<std::string> make_environment(const std::vector<std::string>& extra) {
+  const auto is_replaced = [&](const std::string& entry) {
+    const std::string name = entry.substr(0, entry.find('=') + 1);
+    return std::any_of(extra.begin(), extra.end(), [&](const std::string& other) { return other.starts_with(name); });
+  };
   std::vector<std::string> all;
   for (char** entry = environ; *entry; ++entry) {
     const std::string text = *entry;
-    if (!text.starts_with("NO_COLOR=") && !text.starts_with("TERM=") && !text.starts_with("QUELL_")) all.push_back(text);
+    if (!text.starts_with("NO_COLOR=") && !text.starts_with("TERM=") && !text.starts_with("QUELL_") && !is_replaced(text))
+      all.push_back(text);
   }
   all.insert(all.end(), extra.begin(), extra.end());
   all.push_back("TERM=xterm");  // the first of two entries counts

@@ -1,0 +1,14 @@
+// Text that a command prints, or writes to a file that takes its name when it is complete.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace quell::app {
+
+/// Prints the text, or writes it to the file that --out names. Throws Error(usage) naming --out when the file cannot be written,
+/// or when something stands there that does not begin so: it was not written by the same command.
+void write_output(const std::string& text, const std::optional<std::string>& out, std::string_view beginning);
+
+}  // namespace quell::app
