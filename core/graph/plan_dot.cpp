@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "quell/graph/dot_node.h"
 #include "quell/graph/dot_text.h"
 #include "quell/graph/plan_ports.h"
 #include "quell/graph/plan_presence.h"
@@ -24,15 +25,6 @@ std::string number(double value) {
   text << value;
   return text.str();
 }
-
-// One side of a row of a node: a port, or an item of one that is a list.
-struct Pin {
-  std::string id;  // within the node
-  std::string name, type;
-  std::string color;
-  bool filled = true;
-  bool connected = true;
-};
 
 class Drawing {
  public:
@@ -129,39 +121,15 @@ class Drawing {
   void draw_node(int index, const std::string& name, std::size_t depth) {
     const Node& node = node_of(index);
     const bool gone = gone_.contains(index);
-    const std::string frame(gone ? kGone : kQuiet), ink(gone ? kGone : kInk);
-    const std::vector<Pin> left = input_pins(index), right = output_pins(index);
-    std::string table =
-        "<TABLE BORDER=\"1\" CELLBORDER=\"0\" CELLSPACING=\"0\" CELLPADDING=\"2\" STYLE=\"ROUNDED\" BGCOLOR=\"white\"" +
-        (" COLOR=\"" + frame) + "\">";
-    table += "<TR><TD COLSPAN=\"5\" CELLPADDING=\"4\">" + html_font("<B>" + escape_html(name) + "</B>", ink, 12) + "<BR/>" +
-             html_font(escape_html(node.pass->id), gone ? kGone : kQuiet, 10) + "</TD></TR>";
-    for (std::size_t row = 0; row < std::max(left.size(), right.size()); ++row)
-      table += "<TR>" + left_cells(row < left.size() ? &left[row] : nullptr, gone) + "<TD WIDTH=\"14\"></TD>" +
-               right_cells(row < right.size() ? &right[row] : nullptr, gone) + "</TR>";
+    const std::string table = html_node({name, node.pass->id, input_pins(index), output_pins(index), gone});
     std::string tooltip = node.name + ": " + node.pass->id + "\n" + (node.doc.empty() ? node.pass->summary : node.doc);
     if (gone) tooltip += "\nleft out: " + why_gone(index);
-    out_ += std::string(2 * depth, ' ') + quote_dot(node.name) + " [label=<" + table +
-            "<TR><TD COLSPAN=\"5\" HEIGHT=\"3\"></TD></TR></TABLE>>, tooltip=" + quote_dot(tooltip) + "];\n";
+    out_ +=
+        std::string(2 * depth, ' ') + quote_dot(node.name) + " [label=<" + table + ">, tooltip=" + quote_dot(tooltip) + "];\n";
   }
 
   std::string why_gone(int node) const {
     return presence_.has_node(node) ? "nothing that runs needs it" : presence_.why_node_absent(node);
-  }
-
-  static std::string words(const Pin& pin, bool gone) {
-    const std::string_view ink = gone ? kGone : pin.connected ? kInk : kQuiet;
-    std::string text = html_font(escape_html(pin.name), ink, 10);
-    if (!pin.type.empty()) text += html_font(" " + escape_html(pin.type), gone ? kGone : kQuiet, 8);
-    return text;
-  }
-  static std::string left_cells(const Pin* pin, bool gone) {
-    if (!pin) return "<TD></TD><TD></TD>";
-    return "<TD>" + html_square(pin->color, pin->filled, pin->id) + "</TD><TD ALIGN=\"LEFT\">" + words(*pin, gone) + "</TD>";
-  }
-  static std::string right_cells(const Pin* pin, bool gone) {
-    if (!pin) return "<TD></TD><TD></TD>";
-    return "<TD ALIGN=\"RIGHT\">" + words(*pin, gone) + "</TD><TD>" + html_square(pin->color, pin->filled, pin->id) + "</TD>";
   }
 
   static std::string pin_id(char side, std::size_t port, std::size_t item) {
