@@ -59,7 +59,8 @@ INSTANTIATE_TEST_SUITE_P(
     All, WrongCommandLine,
     ::testing::Values(
         WrongLine{{"rum"},
-                  "error: there is no command 'rum'; did you mean 'run'?; the commands are 'run', 'check', 'graph' and 'passes'\n"
+                  "error: there is no command 'rum'; did you mean 'run'?; the commands are 'run', 'check', 'graph', 'passes' and "
+                  "'schema'\n"
                   "`quell --help` tells more"},
         WrongLine{{"--vesion"}, "error: there is no option '--vesion'; did you mean '--version'?\n`quell --help` tells more"},
         WrongLine{{"run"}, "error: GRAPH is missing\n`quell run --help` tells more"},
