@@ -22,14 +22,13 @@ std::string suggest_option(const CLI::App& app, const std::string& argument) {
 }
 
 std::string explain_extra(const CLI::App& app, const std::string& argument) {
-  const bool is_program = app.get_parent() == nullptr;
   if (argument.starts_with('-')) {
     const std::string name = option_name(argument);
     return "there is no option '" + name + "'" + suggest_option(app, name);
   }
-  if (!is_program) return "'" + argument + "' is one argument too many";
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  if (commands.empty()) return "'" + argument + "' is one argument too many";
   return "there is no command '" + argument + "'" + did_you_mean(argument, commands) + "; the commands are " +
          list_names(commands, "and");
 }
@@ -65,11 +64,20 @@ std::string first_extra(const CLI::App& app) {
   return rest.empty() ? "" : rest.front();
 }
 
+/// The command that was given last: `pass` of `quell new pass`.
+const CLI::App& innermost(const CLI::App& app) {
+  const std::vector<const CLI::App*> chosen = app.get_subcommands([](const CLI::App* command) { return command->parsed(); });
+  return chosen.empty() ? app : innermost(*chosen.front());
+}
+
 }  // namespace
 
+std::string full_name(const CLI::App& app) {
+  return app.get_parent() ? full_name(*app.get_parent()) + " " + app.get_name() : app.get_name();
+}
+
 std::string explain(const CLI::App& program, const CLI::ParseError& error) {
-  const std::vector<const CLI::App*> chosen = program.get_subcommands([](const CLI::App* command) { return command->parsed(); });
-  const CLI::App& app = chosen.empty() ? program : *chosen.front();
+  const CLI::App& app = innermost(program);
   const std::string extra = first_extra(app);
   const auto is = [&](CLI::ExitCodes code) { return error.get_exit_code() == static_cast<int>(code); };
   std::string text = error.what();
@@ -79,8 +87,7 @@ std::string explain(const CLI::App& program, const CLI::ParseError& error) {
     text = explain_missing(app, text);
   else if (is(CLI::ExitCodes::ArgumentMismatch) || is(CLI::ExitCodes::ConversionError))
     text = explain_mismatch(app, text);
-  const std::string command = chosen.empty() ? program.get_name() : program.get_name() + " " + app.get_name();
-  return text + "\n`" + command + " --help` tells more";
+  return text + "\n`" + full_name(app) + " --help` tells more";
 }
 
 }  // namespace quell::app

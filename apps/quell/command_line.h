@@ -15,6 +15,9 @@ namespace quell::app {
 /// Help texts for a terminal of 100 columns.
 std::shared_ptr<CLI::FormatterBase> make_help_formatter();
 
+/// "quell new pass"
+std::string full_name(const CLI::App& app);
+
 /// What is wrong, with a suggestion for a misspelt option or command, and where help is found.
 std::string explain(const CLI::App& program, const CLI::ParseError& error);
 

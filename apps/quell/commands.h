@@ -22,5 +22,6 @@ Command add_check(CLI::App& program);
 Command add_graph(CLI::App& program);
 Command add_passes(CLI::App& program);
 Command add_schema(CLI::App& program);
+Command add_new(CLI::App& program);
 
 }  // namespace quell::app

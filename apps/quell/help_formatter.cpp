@@ -26,9 +26,7 @@ class HelpFormatter final : public CLI::FormatterBase {
   }
 
   static std::string usage(const CLI::App& app, const std::string& name) {
-    std::string text = app.get_parent() ? app.get_parent()->get_name() + " " + app.get_name()
-                       : name.empty()   ? app.get_name()
-                                        : name;
+    std::string text = app.get_parent() || name.empty() ? full_name(app) : name;
     for (const CLI::Option* option : positional_options(app))
       text += option->get_required() ? " " + option->get_name(true) : " [" + option->get_name(true) + "]";
     for (const CLI::Option* option : app.get_options())

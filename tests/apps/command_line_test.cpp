@@ -1,6 +1,7 @@
 // Help, version, and command lines that cannot be understood.
 #include <gmock/gmock.h>
 
+#include <iterator>
 #include <sstream>
 
 #include "tests/apps/sample.h"
@@ -22,8 +23,9 @@ TEST_F(CommandLine, WithoutArgumentsGivesAShortHelp) {
 }
 
 TEST_F(CommandLine, HelpFitsTheTerminalAndHasAnExample) {
-  for (const std::string command : {"run", "check", "graph", "passes"}) {
-    const Outcome outcome = quell({command, "--help"});
+  for (const std::string command : {"run", "check", "graph", "passes", "new", "new pass", "new graph"}) {
+    std::istringstream words(command + " --help");
+    const Outcome outcome = quell({std::istream_iterator<std::string>(words), {}});
     EXPECT_EQ(outcome.code, 0) << command;
     EXPECT_THAT(outcome.out, HasSubstr("Usage: quell " + command)) << command;
     EXPECT_THAT(outcome.out, HasSubstr("Example:\n  quell " + command)) << command;
@@ -59,10 +61,19 @@ INSTANTIATE_TEST_SUITE_P(
     All, WrongCommandLine,
     ::testing::Values(
         WrongLine{{"rum"},
-                  "error: there is no command 'rum'; did you mean 'run'?; the commands are 'run', 'check', 'graph', 'passes' and "
-                  "'schema'\n"
-                  "`quell --help` tells more"},
+                  "error: there is no command 'rum'; did you mean 'run'?; the commands are 'run', 'check', 'graph', 'inspect', 'passes', "
+                   "'schema' and 'new'\n"
+                   "`quell --help` tells more"},
         WrongLine{{"--vesion"}, "error: there is no option '--vesion'; did you mean '--version'?\n`quell --help` tells more"},
+        WrongLine{{"new", "pas"},
+                  "error: there is no command 'pas'; did you mean 'pass'?; the commands are 'pass' and 'graph'\n"
+                  "`quell new --help` tells more"},
+        WrongLine{{"new", "pass"}, "error: NAME is missing\n`quell new pass --help` tells more"},
+        WrongLine{{"new", "pass", "a", "b"}, "error: 'b' is one argument too many\n`quell new pass --help` tells more"},
+        WrongLine{{"new", "graph", "a", "--foldr", "b"},
+                  "error: there is no option '--foldr'; did you mean '--folder'?\n`quell new graph --help` tells more"},
+        WrongLine{{"new", "pass", "a", "--plugin"},
+                  "error: --plugin needs a value: --plugin PLUGIN\n`quell new pass --help` tells more"},
         WrongLine{{"run"}, "error: GRAPH is missing\n`quell run --help` tells more"},
         WrongLine{{"run", "g", "s"}, "error: --out FOLDER is missing\n`quell run --help` tells more"},
         WrongLine{{"run", "--frame", "0-3", "g", "s", "-o", "x"},

@@ -1,29 +1,5 @@
 # The test install.consumer: what a plugin's author goes through, in a scratch folder.
-#   cmake -D BUILD=... -D SCRATCH=... -D SOURCES=... -D GENERATOR=... -P run.cmake
-cmake_minimum_required(VERSION 3.25)
-
-function(run)
-  execute_process(COMMAND ${ARGV} RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE err)
-  string(REPLACE ";" " " command "${ARGV}")
-  if(NOT code EQUAL 0)
-    message("${out}${err}")
-    message(FATAL_ERROR "${command} ended with ${code}")
-  endif()
-  set(output "${out}" PARENT_SCOPE)
-endfunction()
-
-function(expect text pattern)
-  if(NOT text MATCHES "${pattern}")
-    message("${text}")
-    message(FATAL_ERROR "'${pattern}' is not in the text above")
-  endif()
-endfunction()
-
-file(REMOVE_RECURSE ${SCRATCH})
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/first)
-# Nothing may remember where it was installed to.
-file(RENAME ${SCRATCH}/first ${SCRATCH}/moved)
-set(prefix ${SCRATCH}/moved)
+include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 
 # The consumer is the README's, word for word; the checks of this test are added from outside it.
 set(build ${SCRATCH}/build)
@@ -48,4 +24,3 @@ expect("${output}" "invert ${plugins}/my_passes.so\n")
 run(${CMAKE_COMMAND} --install ${build} --prefix ${prefix})
 run(${build}/list_passes)
 expect("${output}" "invert ${prefix}/${PASSES_DIR}/my_passes.so\n")
-file(REMOVE_RECURSE ${SCRATCH})
