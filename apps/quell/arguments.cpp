@@ -50,18 +50,52 @@ void add_options(CLI::App& app, GraphArguments& arguments) {
 
 void add_options(CLI::App& app, SequenceArguments& arguments) {
   app.add_option("SEQUENCE", arguments.sequence,
-                 "A folder of images, which is recognized by its file names, or a sequence.json. May be left out when --in "
-                 "names every input.");
+                 "A folder of images, which is recognized by its file names, a sequence.json, or files that hold every input in "
+                 "layers (multi.####.exr; one file is one frame). May be left out when --in names every input.");
   add_repeatable(
       app, "--in", arguments.in, "INPUT=PATTERN",
       "The files of one input of the graph, such as color=shot/beauty_%d.exr or depth=z.####.exr; repeatable. Settings "
-      "may follow: id=ID_%d.exr:background=-1, also :type=, :channels=R,G,B and :format=.")
+      "may follow: normal=multi.####.exr:ViewLayer.Normal takes a layer, id=ID_%d.exr:background=-1 states a convention (also "
+      ":sign=, :unit=, :y=, :jitter=, :depth=, :space=, :encoding=, :alpha=, :transfer=; see core/sequence/README.md), also "
+      ":type=, :channels=R,G,B and :format=.")
       ->group(kInputGroup);
   app.add_option("--frames", arguments.frames,
                  "Frames to compute: 1-100, 1-100x2 (every second), 1,5,9-12. Without it, those of the sequence.json, or all for "
                  "which every input exists.")
       ->type_name("RANGE")
       ->group(kInputGroup);
+  app.add_option("--crop", arguments.crop,
+                 "For trials: read only this part of the images, in pixels from their upper left corner. Cameras are fitted.")
+      ->type_name("X,Y,WIDTH,HEIGHT")
+      ->group(kInputGroup);
+  app.add_option("--window", arguments.window,
+                 "Read the 'display' window (the default), or the 'data' window of color in the first frame, which may reach "
+                 "beyond it (overscan).")
+      ->type_name("display|data")
+      ->group(kInputGroup);
+}
+
+SequenceOptions sequence_options(const SequenceArguments& arguments) {
+  SequenceOptions options;
+  options.in = arguments.in;
+  if (arguments.frames) options.frames = FrameRange::parse(*arguments.frames);
+  if (arguments.window && parse_choice(*arguments.window, "--window", {"display", "data"}) == 1)
+    options.window = WindowChoice::data;
+  if (!arguments.crop) return options;
+  int numbers[4];
+  const char* at = arguments.crop->data();
+  const char* const end = at + arguments.crop->size();
+  for (int i = 0; i < 4; ++i) {
+    const auto [next, error] = std::from_chars(at, end, numbers[i]);
+    const bool ends_well = i == 3 ? next == end : next != end && *next == ',';
+    if (error != std::errc() || !ends_well || numbers[i] < (i < 2 ? 0 : 1))
+      throw Error(
+          Fault::usage, "--crop",
+          "'" + *arguments.crop + "' is not X,Y,WIDTH,HEIGHT in pixels from the upper left corner, such as 100,50,320,180");
+    at = next + 1;
+  }
+  options.crop = Rectangle{numbers[0], numbers[1], numbers[2], numbers[3]};
+  return options;
 }
 
 int parse_count(const std::string& text, const char* option, int smallest, int largest, const char* or_else) {

@@ -8,6 +8,7 @@
 
 #include "console.h"
 #include "quell/graph/graph.h"
+#include "quell/sequence/sequence.h"
 
 namespace CLI {
 class App;
@@ -35,7 +36,7 @@ struct GraphArguments {
 struct SequenceArguments {
   std::filesystem::path sequence;  ///< empty when not given
   std::vector<std::string> in;
-  std::optional<std::string> frames;
+  std::optional<std::string> frames, window, crop;
 
   bool given() const { return !sequence.empty() || !in.empty(); }
 };
@@ -56,6 +57,9 @@ CLI::Option* add_repeatable(CLI::App& app, const char* name, std::vector<std::st
                             const char* help);
 /// An option with one value.
 CLI::Option* add_text(CLI::App& app, const char* name, std::string& value, const char* value_name, const char* help);
+
+/// What the options say to Sequence::open() (the inputs that are wanted excepted). Throws Error(usage) naming the option.
+SequenceOptions sequence_options(const SequenceArguments& arguments);
 
 /// A whole number of at least `smallest`. Throws Error(usage) naming the option; `or_else` ends the message.
 int parse_count(const std::string& text, const char* option, int smallest, int largest, const char* or_else = "");

@@ -30,10 +30,8 @@ std::unique_ptr<Sequence> open_sequence(const Graph& graph, const SequenceArgume
     throw Error(Fault::usage, "SEQUENCE",
                 "no sequence is given; name a folder, a sequence.json, or the files of each input (" + describe_wanted(graph) +
                     ") with --in INPUT=PATTERN");
-  SequenceOptions options;
-  options.in = arguments.in;
+  SequenceOptions options = sequence_options(arguments);
   options.wanted = names_of_inputs(graph);
-  if (arguments.frames) options.frames = FrameRange::parse(*arguments.frames);
   std::unique_ptr<Sequence> sequence = Sequence::open(arguments.sequence, options);
   for (const GraphInput& input : graph.inputs) sequence->expect(input.name, input.type);
   return sequence;
@@ -58,7 +56,8 @@ void require_known_names(const Graph& graph, const SequenceArguments& arguments)
   }
 }
 
-void require_inputs(const Graph& graph, const std::vector<InputFiles>& found, const std::string& place) {
+void require_inputs(const Graph& graph, const std::vector<InputFiles>& found, const Sequence& sequence,
+                    const std::string& place) {
   std::string missing, example;
   for (const GraphInput& input : graph.inputs) {
     const auto is_it = [&](const InputFiles& files) { return files.input == input.name; };
@@ -67,11 +66,15 @@ void require_inputs(const Graph& graph, const std::vector<InputFiles>& found, co
     if (example.empty()) example = input.name + "=FOLDER/NAME.####" + (input.type == QUELL_TYPE_CAMERA ? ".json" : ".exr");
   }
   if (missing.empty()) return;
-  std::string have;
+  std::string have, layers = sequence.describe_layers();
+  if (!layers.empty()) {
+    layers = "\n" + layers;
+    example = example.substr(0, example.find('=')) + "=PATTERN:LAYER";
+  }
   for (const InputFiles& files : found) have += (have.empty() ? "" : ", ") + files.input;
   throw Error(Fault::input, place,
               "inputs of the graph '" + graph.name + "' are missing:" + missing + "\nthe sequence has: " +
-                  (have.empty() ? "nothing" : have) + "\nname their files, for example: --in " + example);
+                  (have.empty() ? "nothing" : have) + layers + "\nname their files, for example: --in " + example);
 }
 
 /// The files of the inputs that the plan reads, in the graph's order.
@@ -158,7 +161,7 @@ Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arg
   tell_new_warnings(job);  // at once: they may explain the error that follows
   const std::vector<InputFiles> found = job.sequence->inputs();
   const std::string place = arguments.sequence.empty() ? "--in" : arguments.sequence.string();
-  require_inputs(*graph, found, place);
+  require_inputs(*graph, found, *job.sequence, place);
   job.plan = make_plan(graph, shapes_of(*graph, *job.sequence), dumps);
   job.inputs = select_inputs(job.plan, found);
   job.frames = choose_frames(*job.sequence, job.inputs, place);

@@ -1,12 +1,12 @@
 #include "quell/sequence/camera_file.h"
 
-#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 
+#include "quell/sequence/matrix.h"
 #include "quell/text/json.h"
 
 namespace quell {
@@ -54,6 +54,7 @@ class SidecarReader {
       camera.size = {read_length(*root, "width"), read_length(*root, "height")};
       camera.world_to_camera = read_matrix(*root, "world_to_camera");
       camera.world_to_screen = read_matrix(*root, "world_to_pixel");
+      if (const Json* jitter = root->find("jitter")) read_jitter(*jitter, camera);
       read_objects(*root, camera);
       const Json* view = root->find("world_to_camera");
       if (errors_.empty() && !is_invertible(camera.world_to_camera)) errors_.error(view->where, "this matrix cannot be inverted");
@@ -97,6 +98,14 @@ class SidecarReader {
     return matrix;
   }
 
+  void read_jitter(const Json& value, Camera& camera) {
+    const auto& numbers = value.elements;
+    const auto finite = [](const Json& number) { return number.is_number() && std::isfinite(number.number); };
+    if (value.kind != Json::Kind::array || numbers.size() != 2 || !finite(numbers[0]) || !finite(numbers[1]))
+      return errors_.error(value.where, "expected the jitter in pixels, [x, y], found " + excerpt(value));
+    camera.jitter = {numbers[0].number, numbers[1].number};
+  }
+
   void read_objects(const Json& root, Camera& camera) {
     const Json* objects = require(root, "objects");
     if (!objects) return;
@@ -119,25 +128,6 @@ class SidecarReader {
 };
 
 }  // namespace
-
-bool is_invertible(const Matrix& m) {
-  // Gaussian elimination with the largest pivot; a pivot this far below the largest element is rounding.
-  Matrix a = m;
-  double largest = 0;
-  for (const double value : a) largest = std::max(largest, std::abs(value));
-  for (std::size_t k = 0; k < 4; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t row = k + 1; row < 4; ++row)
-      if (std::abs(a[4 * row + k]) > std::abs(a[4 * pivot + k])) pivot = row;
-    if (!(std::abs(a[4 * pivot + k]) > 1e-14 * largest)) return false;
-    for (std::size_t column = 0; column < 4; ++column) std::swap(a[4 * k + column], a[4 * pivot + column]);
-    for (std::size_t row = k + 1; row < 4; ++row) {
-      const double factor = a[4 * row + k] / a[4 * k + k];
-      for (std::size_t column = k; column < 4; ++column) a[4 * row + column] -= factor * a[4 * k + column];
-    }
-  }
-  return true;
-}
 
 Camera read_mat_camera(const std::filesystem::path& file, Size resolution) {
   const std::string bytes = read_bytes(file);

@@ -12,12 +12,9 @@ namespace quell {
 /// that, when a number is not finite, or world-to-camera cannot be inverted.
 Camera read_mat_camera(const std::filesystem::path& file, Size resolution);
 
-/// A JSON sidecar: width, height, world_to_camera, world_to_pixel (lists of 4 rows, column vectors; pixels y down) and objects,
-/// {"<id>": {"object_to_world": ...}}. Other keys are the renderer's own and not looked at. Throws Error(input) with every
-/// mistake and its place.
+/// A JSON sidecar: width, height, world_to_camera, world_to_pixel (lists of 4 rows, column vectors; pixels y down), objects,
+/// {"<id>": {"object_to_world": ...}}, and optionally jitter, [x, y] in pixels (contained in world_to_pixel). Other keys are the
+/// renderer's own and not looked at. Throws Error(input) with every mistake and its place.
 Camera read_json_camera(const std::filesystem::path& file);
-
-/// Whether a matrix can be inverted in double precision.
-bool is_invertible(const Matrix& m);
 
 }  // namespace quell

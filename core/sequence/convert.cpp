@@ -33,20 +33,6 @@ void fill_rows(Output out, const Rectangle& covered, Value value) {
 
 }  // namespace
 
-void normalize_normals(FloatOutput normals) {
-  for (int y = 0; y < normals.height; ++y) {
-    float* const plane[3] = {normals.row(y, 0), normals.row(y, 1), normals.row(y, 2)};
-    for (int x = 0; x < normals.width; ++x) {
-      const double nx = plane[0][x], ny = plane[1][x], nz = plane[2][x];
-      const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
-      if (!(length > 0) || !std::isfinite(length)) continue;
-      plane[0][x] = static_cast<float>(nx / length);
-      plane[1][x] = static_cast<float>(ny / length);
-      plane[2][x] = static_cast<float>(nz / length);
-    }
-  }
-}
-
 void mark_no_surface(FloatOutput depth) {
   for (int y = 0; y < depth.height; ++y)
     for (float& z : std::span(depth.row(y), static_cast<std::size_t>(depth.width)))

@@ -1,4 +1,4 @@
-// From what renderers write to the fixed meaning of a port type.
+// Where there is no surface: depths and ids that mean so, and pixels that a file does not hold.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +6,9 @@
 #include <string>
 
 #include "quell/image/image.h"
-#include "quell/sequence/exr_file.h"
+#include "quell/sequence/image_file.h"
 
 namespace quell {
-
-/// Scales normals to unit length, computed in double; zero stays zero, and so does what is not finite.
-void normalize_normals(FloatOutput normals);
 
 /// Depth 0, infinite, or at least 1e9 means that there is no surface, and becomes QUELL_NO_SURFACE_DEPTH.
 void mark_no_surface(FloatOutput depth);

@@ -123,12 +123,43 @@ std::optional<FilePattern> FilePattern::parse(std::string_view text, const std::
   }
 }
 
+FilePattern FilePattern::single(const std::filesystem::path& file, std::int64_t frame) {
+  FilePattern pattern;
+  pattern.folder_ = file.parent_path();
+  pattern.prefix_ = pattern.name_ = file.filename().string();
+  pattern.single_frame_ = frame;
+  return pattern;
+}
+
+std::string FilePattern::stem() const {
+  std::string stem = prefix_;
+  if (single_frame_) {
+    const auto numbered = take_apart(prefix_);
+    stem = numbered ? numbered->prefix : prefix_.substr(0, prefix_.rfind('.'));
+  }
+  if (!stem.empty() && (stem.back() == '.' || stem.back() == '_')) stem.pop_back();
+  return stem;
+}
+
+std::optional<NumberedName> take_apart(const std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos || dot == 0) return std::nullopt;
+  std::size_t start = dot;
+  while (start > 0 && is_digit(name[start - 1])) --start;
+  if (start == dot) return std::nullopt;
+  if (start > 0 && name[start - 1] == '-') --start;
+  if (dot - start > kMaxDigits || start < 2 || (name[start - 1] != '.' && name[start - 1] != '_')) return std::nullopt;
+  return NumberedName{name.substr(0, start), name.substr(start, dot - start), name.substr(dot)};
+}
+
 std::string FilePattern::file_name(std::int64_t frame) const {
+  if (single_frame_) return prefix_;
   const int sign = sign_counts_ && frame < 0 ? 1 : 0;
   return prefix_ + padded(frame, std::max(digits_ - sign, 1)) + suffix_;
 }
 
 std::optional<FilePattern::Match> FilePattern::match(std::string_view name) const {
+  if (single_frame_) return name == prefix_ ? std::optional(Match{*single_frame_, true}) : std::nullopt;
   if (name.size() <= prefix_.size() + suffix_.size()) return std::nullopt;
   if (!name.starts_with(prefix_) || !name.ends_with(suffix_)) return std::nullopt;
   const std::string_view number = name.substr(prefix_.size(), name.size() - prefix_.size() - suffix_.size());

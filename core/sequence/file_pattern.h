@@ -26,6 +26,9 @@ class FilePattern {
   /// FOLDER/<prefix><at least `digits` digits><suffix>.
   FilePattern(std::filesystem::path folder, std::string prefix, int digits, std::string suffix);
 
+  /// One file, which is that frame, whether a number stands in its name or not. It is its own pattern.
+  static FilePattern single(const std::filesystem::path& file, std::int64_t frame);
+
   const std::filesystem::path& folder() const { return folder_; }
   /// The file name's pattern as it was written; that of the constructor is written with `#`, or `%d` when not padded.
   const std::string& name() const { return name_; }
@@ -34,6 +37,13 @@ class FilePattern {
   /// Least number of digits; 1 when not padded.
   int digits() const { return digits_; }
 
+  /// What files are called besides their number: the text before it, without the dot or underline in between, or, of a single
+  /// file, the name without its extension.
+  std::string stem() const;
+  /// The frame of a single file.
+  const std::optional<std::int64_t>& single_frame() const { return single_frame_; }
+
+  /// Of a single file, its name for every frame.
   std::string file_name(std::int64_t frame) const;
   std::filesystem::path path(std::int64_t frame) const { return folder_ / file_name(frame); }
 
@@ -47,11 +57,19 @@ class FilePattern {
   std::filesystem::path folder_;
   std::string prefix_, suffix_, name_;
   int digits_ = 1;
-  bool sign_counts_ = false;  // as in printf
+  std::optional<std::int64_t> single_frame_;  // then the name is prefix_
+  bool sign_counts_ = false;                  // as in printf
 };
 
 /// A number with at least `digits` digits, a minus sign not counted.
 std::string padded(std::int64_t number, int digits);
+
+/// A file name with a frame number before its extension, taken apart: "beauty_", "12", ".exr".
+struct NumberedName {
+  std::string prefix, number, suffix;
+};
+/// Nothing when no number stands there after a dot or an underline.
+std::optional<NumberedName> take_apart(const std::string& name);
 
 /// The files of a pattern in a folder's listing.
 struct FrameFiles {

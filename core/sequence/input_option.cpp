@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 
 #include "quell/sequence/input_spec.h"
 #include "quell/text/diagnostic.h"
@@ -7,7 +6,11 @@
 namespace quell {
 namespace {
 
-const std::vector<std::string> kKeys = {"type", "channels", "background", "format"};
+std::vector<std::string> known_keys() {
+  std::vector<std::string> keys = {"type", "channels", "format"};
+  for (const ConventionKey& known : convention_keys()) keys.emplace_back(known.key);
+  return keys;
+}
 
 [[noreturn]] void fail(const std::string& text, const std::string& what) {
   throw Error(Fault::usage, "--in " + text, what + "; an example: --in id=ID_%d.exr:background=-1");
@@ -33,6 +36,20 @@ std::size_t find_settings(std::string_view text) {
   return text.size();
 }
 
+/// Where the name of an image file ends and a colon with a layer's name follows; npos when there is none.
+std::size_t find_layer(std::string_view text) {
+  std::size_t first = std::string_view::npos;
+  const std::string lower = [&] {
+    std::string copy(text);
+    for (char& c : copy)
+      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return copy;
+  }();
+  for (const std::string_view extension : {".exr:", ".tif:", ".tiff:", ".png:", ".hdr:", ".pfm:"})
+    if (const std::size_t at = lower.find(extension); at != std::string::npos) first = std::min(first, at + extension.size() - 1);
+  return first;
+}
+
 void apply(InputSpec& spec, const std::string& key, const std::string& value, const std::string& text) {
   if (key == "type") {
     spec.type = port_type(value);
@@ -40,16 +57,13 @@ void apply(InputSpec& spec, const std::string& key, const std::string& value, co
   } else if (key == "channels") {
     spec.channels = split(value, ',');
     if (std::count(spec.channels.begin(), spec.channels.end(), "")) fail(text, "a channel's name is empty");
-  } else if (key == "background") {
-    std::int64_t number = 0;
-    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-    if (error != std::errc() || end != value.data() + value.size()) fail(text, "background must be an integer");
-    spec.background = number;
   } else if (key == "format") {
     spec.camera = camera_format(value);
-    if (!spec.camera) fail(text, "there is no camera format '" + value + "'; it is json or mat");
-  } else {
-    fail(text, "there is no setting '" + key + "'" + did_you_mean(key, kKeys) + "; there are " + list_names(kKeys, "and"));
+    if (!spec.camera) fail(text, "there is no camera format '" + value + "'; it is json, mat or header");
+  } else if (const auto keys = known_keys(); std::find(keys.begin(), keys.end(), key) == keys.end()) {
+    fail(text, "there is no setting '" + key + "'" + did_you_mean(key, keys) + "; there are " + list_names(keys, "and"));
+  } else if (const auto wrong = set_convention(spec.conventions, key, value)) {
+    fail(text, *wrong);
   }
 }
 
@@ -64,6 +78,7 @@ bool is_input_name(std::string_view name) {
 std::optional<CameraFormat> camera_format(std::string_view name) {
   if (name == "json") return CameraFormat::json;
   if (name == "mat") return CameraFormat::mat;
+  if (name == "header") return CameraFormat::header;
   return std::nullopt;
 }
 
@@ -76,8 +91,11 @@ std::optional<PortType> InputSpec::usual_type() const {
 CameraFormat InputSpec::camera_format() const {
   if (camera) return *camera;
   const std::string extension = std::filesystem::path(pattern.name()).extension().string();
-  if (const auto format = quell::camera_format(extension.empty() ? "" : extension.substr(1))) return *format;
-  throw Error(Fault::input, pattern.text(), "the camera's format is not told by the file name; state \"json\" or \"mat\"");
+  if (extension == ".json") return CameraFormat::json;
+  if (extension == ".mat") return CameraFormat::mat;
+  if (extension == ".exr") return CameraFormat::header;
+  throw Error(Fault::input, pattern.text(),
+              "the camera's format is not told by the file name; state \"json\", \"mat\" or \"header\"");
 }
 
 InputSpec parse_input_option(const std::string& text) {
@@ -90,7 +108,12 @@ InputSpec parse_input_option(const std::string& text) {
 
   const std::string rest = text.substr(equals + 1);
   const std::size_t settings = find_settings(rest);
-  spec.pattern = FilePattern::parse(rest.substr(0, settings), {}, "--in");
+  const std::size_t layer = std::min(find_layer(rest), settings);
+  if (layer < settings) {
+    spec.layer = rest.substr(layer + 1, settings - layer - 1);
+    if (spec.layer.empty()) fail(text, "the layer's name after the colon is empty");
+  }
+  spec.pattern = parse_files(rest.substr(0, layer), "--in");
   for (std::string left = rest.substr(settings); !left.empty();) {
     left.erase(0, 1);
     const std::size_t value = left.find('=') + 1;
@@ -98,6 +121,9 @@ InputSpec parse_input_option(const std::string& text) {
     apply(spec, left.substr(0, value - 1), left.substr(value, end - value), text);
     left.erase(0, end);
   }
+  if (!spec.layer.empty() && !spec.channels.empty()) fail(text, "name a layer or its channels, not both");
+  if (const auto type = spec.usual_type())
+    if (const auto wrong = find_misplaced(spec.conventions, *type)) fail(text, *wrong);
   return spec;
 }
 

@@ -34,7 +34,10 @@ std::string camera_json(const Camera& camera, std::int64_t frame) {
   std::string text = "{\n \"frame\": " + std::to_string(frame) + ",\n \"width\": " + std::to_string(camera.size.width) +
                      ",\n \"height\": " + std::to_string(camera.size.height) +
                      ",\n \"world_to_camera\": " + matrix(camera.world_to_camera) +
-                     ",\n \"world_to_pixel\": " + matrix(camera.world_to_screen) + ",\n \"objects\": {";
+                     ",\n \"world_to_pixel\": " + matrix(camera.world_to_screen);
+  if (camera.jitter != std::array<double, 2>{})
+    text += ",\n \"jitter\": [" + number(camera.jitter[0]) + ", " + number(camera.jitter[1]) + "]";
+  text += ",\n \"objects\": {";
   const char* joint = "\n  \"";
   for (const auto& [id, object_to_world] : camera.object_to_world) {
     text += joint + std::to_string(id) + "\": {\"object_to_world\": " + matrix(object_to_world) + "}";

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
-#include "quell/sequence/camera_file.h"
 #include "quell/sequence/sequence_file.h"
 #include "quell/sequence/sequence_state.h"
 #include "quell/text/error.h"
@@ -23,6 +23,8 @@ std::unique_ptr<Sequence> Sequence::open(const fs::path& path, const SequenceOpt
     stated.insert_or_assign(spec.name, spec);
   }
   state->asked = options.frames;
+  state->window_choice = options.window;
+  state->crop = options.crop;
   std::error_code error;
   const bool folder = fs::is_directory(path, error);
   if (path.empty()) {
@@ -34,10 +36,17 @@ std::unique_ptr<Sequence> Sequence::open(const fs::path& path, const SequenceOpt
     FolderLayout layout = recognize_folder(path, stated, options.wanted);
     state->title = path.string() + ": " + layout.description;
     specs = std::move(layout.inputs);
+  } else if (!folder && path.extension() != ".json") {
+    const bool is_pattern = path.filename().string().find_first_of("#%") != std::string::npos;
+    if (!is_pattern && !fs::exists(file, error)) throw Error(Fault::input, path.string(), "no such folder or file");
+    const FilePattern pattern = parse_files(path.string(), "SEQUENCE");
+    FolderLayout layout = recognize_files(pattern, stated, options.wanted);
+    state->title = path.string() + ": " + layout.description;
+    state->shared = pattern;
+    specs = std::move(layout.inputs);
+    if (!state->asked && pattern.single_frame()) state->asked = FrameRange({*pattern.single_frame()});
   } else {
     if (!fs::exists(file, error)) throw Error(Fault::input, path.string(), "no such folder or file");
-    if (file.extension() != ".json")
-      throw Error(Fault::input, path.string(), "a sequence is a folder or a .json file; single patterns are given with --in");
     SequenceFile described = read_sequence_file(file);
     state->title = file.string() + (described.name.empty() ? "" : ": " + described.name);
     specs = std::move(described.inputs);
@@ -51,6 +60,7 @@ std::unique_ptr<Sequence> Sequence::open(const fs::path& path, const SequenceOpt
 
 void Sequence::expect(std::string_view input, PortType type) {
   const SequenceInput* found = state_->find(input);
+  if (!found) found = state_->find_shared(input, type);
   if (!found) return;
   if (found->spec.type && *found->spec.type != type)
     throw Error(Fault::input, found->spec.origin,
@@ -124,6 +134,25 @@ std::string Sequence::describe() const {
     const std::string& pattern = input.spec.pattern.name();
     text += "\n  " + name + std::string(name_width - name.size() + 2, ' ') + pattern +
             std::string(pattern_width - pattern.size() + 2, ' ') + "frames " + FrameRange(input.frames).text();
+    if (const std::string choice = state_->describe_choice(input); !choice.empty()) text += "  " + choice;
+  }
+  return text;
+}
+
+std::string Sequence::describe_layers() const {
+  std::string text;
+  std::set<std::string> told;
+  for (const auto& [name, input] : state_->inputs) {
+    if (!input.spec.shared || input.frames.empty() || !told.insert(input.spec.pattern.text()).second) continue;
+    text += (text.empty() ? "" : "\n") + input.spec.pattern.text() + " has the layers:";
+    const ImageFile file(input.spec.pattern.path(input.frames.front()));
+    for (const Layer& layer : group_layers(file.channels())) {
+      text += "\n  " + (layer.name.empty() ? "without a layer" : layer.name) + "  (";
+      for (const int channel : layer.channels)
+        text += (channel == layer.channels.front() ? "" : ",") +
+                std::string(channel_suffix(file.channels()[static_cast<std::size_t>(channel)].name));
+      text += ")";
+    }
   }
   return text;
 }
@@ -131,6 +160,22 @@ std::string Sequence::describe() const {
 std::vector<std::string> Sequence::warnings() const {
   const std::lock_guard lock(state_->mutex);
   return {state_->warnings.begin(), state_->warnings.end()};
+}
+
+std::optional<PictureWindow> Sequence::picture_window() { return state_->picture_window(); }
+
+fs::path Sequence::file(std::string_view input, std::int64_t frame) const {
+  return state_->require(input).spec.pattern.path(frame);
+}
+
+std::vector<std::string> Sequence::channels_read(std::string_view name, std::int64_t frame) const {
+  const SequenceInput& input = state_->require(name);
+  const fs::path path = input.spec.pattern.path(frame);
+  const ImageFile file(path);
+  std::vector<std::string> names;
+  for (const int channel : select_channels(file.channels(), state_->request(input), path.string()).channels)
+    names.push_back(file.channels()[static_cast<std::size_t>(channel)].name);
+  return names;
 }
 
 std::optional<Shape> Sequence::shape(std::string_view input) {
@@ -142,18 +187,22 @@ Item Sequence::read(std::string_view name, std::int64_t frame, BufferPool& pool)
   const SequenceInput& input = state_->require(name);
   const fs::path file = input.spec.pattern.path(frame);
   std::error_code error;
-  if (!fs::exists(file, error))
+  const auto& single = input.spec.pattern.single_frame();
+  if (!fs::exists(file, error) || (single && *single != frame))
     throw Error(Fault::input, file.string(),
                 "the input '" + std::string(name) + "' has no file for frame " + std::to_string(frame) + "; " +
                     input.spec.pattern.name() + " has frames " + FrameRange(input.frames).text());
   const PortType type = state_->type(input);
   if (type == QUELL_TYPE_CAMERA) {
-    if (input.spec.camera_format() == CameraFormat::json) return read_json_camera(file);
-    return read_mat_camera(file, state_->resolution(file));
+    Camera camera = state_->read_camera(input, frame);
+    const std::optional<Rectangle> window = state_->window();
+    return window ? shift(std::move(camera), *window) : camera;
   }
   if (!is_image(type))
     throw Error(Fault::input, file.string(), "the input '" + std::string(name) + "' is of type value, which no file can carry");
-  return read_image(file, state_->request(input), pool, [&](const std::string& note) {
+  ImageRequest request = state_->request(input);
+  request.camera = [&](int frames_back) { return state_->find_camera(frame - frames_back); };
+  return read_image(file, request, pool, [&](const std::string& note) {
     const std::lock_guard lock(state_->mutex);
     state_->warnings.insert(note);
   });

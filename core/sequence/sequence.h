@@ -11,14 +11,23 @@
 
 #include "quell/image/stream.h"
 #include "quell/sequence/frame_range.h"
+#include "quell/sequence/image_file.h"
 
 namespace quell {
+
+/// Which part of the images is read.
+enum class WindowChoice {
+  display,  ///< the display window: what is to be looked at
+  data,     ///< the data window of `color` (else of the first image input) in the first frame, which may reach beyond (overscan)
+};
 
 struct SequenceOptions {
   std::vector<std::string> in;       ///< from --in: "color=beauty_%d.exr", "id=ID_%d.exr:background=-1"; later ones win
   std::optional<FrameRange> frames;  ///< from --frames
   /// What will be read, when that is known: other inputs of a folder that are ambiguous are left out instead of being an error.
   std::optional<std::vector<std::string>> wanted = std::nullopt;
+  WindowChoice window = WindowChoice::display;   ///< from --window
+  std::optional<Rectangle> crop = std::nullopt;  ///< from --crop: part of that window, in pixels from its upper left corner
 };
 
 /// One input as it was found.
@@ -36,19 +45,27 @@ struct MissingFile {
   std::filesystem::path file;
 };
 
+/// Where the images of a run lie, in the coordinates of the sequence's files.
+struct PictureWindow {
+  Rectangle display;       ///< what is to be looked at
+  Rectangle data;          ///< what the run reads and makes, of which it may be a part, or reach beyond it
+  float pixel_aspect = 1;  ///< a pixel's width by its height
+};
+
 /// Reads frames from files. Each input is known by its name and converted to the meaning of its port type: the type that
 /// expect() or the sequence.json states, else the type whose name the input has (`reference`, `emission` and `noisy` are color).
 /// How files are named and converted is written in core/sequence/README.md.
 class Sequence final : public FrameSource {
  public:
-  /// `path` is a folder whose file names are recognized (or that holds a sequence.json), a sequence.json, or empty when
-  /// options.in names everything. Throws Error(input) for what is missing, unreadable, ambiguous or wrong in a sequence.json
-  /// (all mistakes at once), Error(usage) for a malformed option.
+  /// `path` is a folder whose file names are recognized (or that holds a sequence.json), a sequence.json, a pattern of image
+  /// files that serve all inputs ("multi.####.exr"), one such file (that frame alone), or empty when options.in names everything.
+  /// Throws Error(input) for what is missing, unreadable, ambiguous or wrong in a sequence.json (all mistakes at once),
+  /// Error(usage) for a malformed option.
   static std::unique_ptr<Sequence> open(const std::filesystem::path& path, const SequenceOptions& options = {});
   ~Sequence() override;
 
   /// Tells the type that the graph wants of an input. Call before shape() and read(). Throws Error(input) when the sequence.json
-  /// states another type; an input that the sequence does not have is ignored.
+  /// states another type. An input that the sequence does not have is looked for in files that serve several; else it is ignored.
   void expect(std::string_view input, PortType type);
 
   /// The frames to run when these inputs are needed: those asked for (--frames, else "frames" of the sequence.json), else those
@@ -64,11 +81,22 @@ class Sequence final : public FrameSource {
   /// Digits of the frame numbers in file names (of `color` when there is one), for files to be written; 4 when they are not
   /// padded.
   int padding() const;
-  /// What was recognized, a line each, for printing.
+  /// What was recognized, a line each, for printing: the input, its files, and of files with several layers, or of which
+  /// something is stated, also the layer, the channels, the renderer and the conventions.
   std::string describe() const;
+  /// The layers of the files that serve several inputs, a line each, for a person who misses one; "" when there are no such files.
+  std::string describe_layers() const;
   /// What a person should know: padding that differs from the disk's, images that cover only part of their frame. Grows while
   /// reading.
   std::vector<std::string> warnings() const;
+
+  /// Of `color` in the first frame, else of the first image input by name; nothing when there is no image.
+  std::optional<PictureWindow> picture_window();
+  /// The file of an input in a frame, whether it is there or not. Throws Error(input) when there is no such input.
+  std::filesystem::path file(std::string_view input, std::int64_t frame) const;
+  /// Full names (see FileChannel) of the channels that an image input is read from in a frame, one for each plane. Opens the
+  /// file. Throws Error(input).
+  std::vector<std::string> channels_read(std::string_view input, std::int64_t frame) const;
 
   std::optional<Shape> shape(std::string_view input) override;
   /// Pixels that are not finite are passed on as they are, except depths (see convert.h).

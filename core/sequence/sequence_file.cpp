@@ -9,8 +9,16 @@ namespace {
 
 using Keys = std::vector<std::string>;
 const Keys kTopKeys = {"quell_sequence", "name", "doc", "frames", "inputs"};
-const Keys kInputKeys = {"file", "type", "channels", "background", "format", "doc"};
 constexpr std::int64_t kVersion = 1;
+
+const Keys& input_keys() {
+  static const Keys keys = [] {
+    Keys all = {"file", "type", "layer", "channels", "format", "doc"};
+    for (const ConventionKey& known : convention_keys()) all.emplace_back(known.key);
+    return all;
+  }();
+  return keys;
+}
 
 class Reader {
  public:
@@ -72,14 +80,19 @@ class Reader {
     if (value.kind == Json::Kind::string) {
       read_pattern(value, spec);
     } else if (expect(value, Json::Kind::object, "a file pattern, or an object with \"file\"")) {
-      check_keys(value, kInputKeys);
+      check_keys(value, input_keys());
       read_string(value, "doc");
       if (const Json* file = value.find("file"); !file)
         errors_.error(value.where, "the key \"file\" is missing; write \"file\": \"" + member.key + ".####.exr\"");
       else if (expect(*file, Json::Kind::string, "a file pattern such as \"color.####.exr\""))
         read_pattern(*file, spec);
       read_type(value, spec);
-      read_conventions(value, spec);
+      spec.layer = read_string(value, "layer");
+      if (const Json* channels = value.find("channels")) read_channels(*channels, spec);
+      if (!spec.layer.empty() && !spec.channels.empty()) errors_.error(value.where, "name a layer or its channels, not both");
+      if (const Json* format = value.find("format")) read_format(*format, spec);
+      for (const ConventionKey& key : convention_keys())
+        if (const Json* stated = value.find(key.key)) read_convention(key, *stated, spec);
     }
     inputs.emplace(member.key, std::move(spec));
   }
@@ -99,19 +112,28 @@ class Reader {
                                    list_names(types, "and"));
   }
 
-  void read_conventions(const Json& object, InputSpec& spec) {
-    const auto type = spec.usual_type();
-    if (const Json* value = object.find("channels")) read_channels(*value, spec);
-    if (const Json* value = object.find("background")) {
-      if (type && *type != QUELL_TYPE_ID) errors_.error(value->where, "only an id has a background value");
-      if (expect(*value, Json::Kind::integer, "an integer")) spec.background = value->integer;
+  void read_convention(const ConventionKey& key, const Json& value, InputSpec& spec) {
+    std::string text = value.string;
+    if (key.values.empty()) {
+      if (!expect(value, Json::Kind::integer, "an integer")) return;
+      text = std::to_string(value.integer);
+    } else if (!expect(value, Json::Kind::string, list_names({key.values.begin(), key.values.end()}))) {
+      return;
     }
-    const Json* format = object.find("format");
-    if (!format) return;
-    if (type && *type != QUELL_TYPE_CAMERA) errors_.error(format->where, "only a camera has a format");
-    if (!expect(*format, Json::Kind::string, "\"json\" or \"mat\"")) return;
-    spec.camera = camera_format(format->string);
-    if (!spec.camera) errors_.error(format->where, "expected \"json\" or \"mat\", found " + excerpt(*format));
+    Conventions stated;
+    const auto type = spec.usual_type();
+    auto wrong = set_convention(stated, key.key, text);
+    if (!wrong && type) wrong = find_misplaced(stated, *type);
+    if (wrong) errors_.error(value.where, *wrong);
+    spec.conventions = stated.or_else(spec.conventions);
+  }
+
+  void read_format(const Json& format, InputSpec& spec) {
+    const auto type = spec.usual_type();
+    if (type && *type != QUELL_TYPE_CAMERA) errors_.error(format.where, "only a camera has a format");
+    if (!expect(format, Json::Kind::string, "\"json\", \"mat\" or \"header\"")) return;
+    spec.camera = camera_format(format.string);
+    if (!spec.camera) errors_.error(format.where, "expected \"json\", \"mat\" or \"header\", found " + excerpt(format));
   }
 
   void read_channels(const Json& value, InputSpec& spec) {

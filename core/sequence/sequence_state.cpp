@@ -65,9 +65,16 @@ PortType Sequence::State::type(const SequenceInput& input) const {
       "the type of the input '" + input.spec.name + "' is not known; state it: --in " + input.spec.name + "=PATTERN:type=scalar");
 }
 
-ImageRequest Sequence::State::request(const SequenceInput& input) const {
-  ImageRequest request{type(input), input.spec.channels, input.spec.background};
-  if (!request.background && input.has_sidecars) request.background = 0;
+ImageRequest Sequence::State::request(const SequenceInput& input) {
+  ImageRequest request{type(input), input.spec.channels, input.spec.conventions};
+  request.layer = input.spec.layer;
+  request.input = input.spec.name;
+  request.pattern = input.spec.pattern.text();
+  request.stem = input.spec.pattern.stem();
+  request.shared = input.spec.shared;
+  request.window = window();
+  if (const auto wrong = find_misplaced(request.conventions, request.type)) throw Error(Fault::input, input.spec.origin, *wrong);
+  if (request.type == QUELL_TYPE_ID && !request.conventions.background && input.has_sidecars) request.conventions.background = 0;
   return request;
 }
 
@@ -86,7 +93,10 @@ Shape Sequence::State::shape(std::string_view name) {
   const SequenceInput& input = require_files(name);
   Shape shape;
   shape.type = type(input);
-  if (is_image(shape.type)) shape.size = probe_image(input.spec.pattern.path(first_frame(input)), request(input));
+  if (is_image(shape.type)) {
+    shape.size = probe_image(input.spec.pattern.path(first_frame(input)), request(input));
+    require_same_size(input);
+  }
   const std::lock_guard lock(mutex);
   return shapes.emplace(name, shape).first->second;
 }
@@ -96,13 +106,11 @@ bool Sequence::State::is_picture(const SequenceInput& input) const {
   return known && !input.frames.empty() && is_image(type(input));
 }
 
-Size Sequence::State::resolution(const std::filesystem::path& camera) {
-  if (const SequenceInput* color = find("color"); color && is_picture(*color)) return shape("color").size;
+const SequenceInput* Sequence::State::main_picture() const {
+  if (const SequenceInput* color = find("color"); color && is_picture(*color)) return color;
   for (const auto& [name, input] : inputs)
-    if (is_picture(input)) return shape(name).size;
-  throw Error(
-      Fault::input, camera.string(),
-      "this camera's file does not tell the resolution, and the sequence has no image to take it from; add one with --in");
+    if (is_picture(input)) return &input;
+  return nullptr;
 }
 
 }  // namespace quell

@@ -35,6 +35,45 @@ TEST_F(Input, GivesTheSameBytesHoweverItIsNamed) {
   EXPECT_EQ(contents("by_folder"), contents("by_option"));
 }
 
+TEST_F(Input, CanBeFilesThatHoldAllInputsOrOneOfThem) {
+  make_shot(3);
+  const std::string graph = make_graph();
+  EXPECT_EQ(run({"run", graph, text("shot"), "-o", text("by_folder"), "-q"}).err, "");
+  EXPECT_EQ(run({"run", graph, text("shot/color.####.exr"), "-o", text("by_pattern"), "-q"}).err, "");
+  EXPECT_EQ(contents("by_folder"), contents("by_pattern"));
+  const Outcome one = run({"run", graph, text("shot/color.0002.exr"), "-o", text("one")});
+  EXPECT_EQ(one.code, 0) << one.err;
+  EXPECT_THAT(one.err, HasSubstr(": one file for all inputs\n"));
+  EXPECT_THAT(one.err, HasSubstr("  color  color.0002.exr  frames 2  R,G,B\n"));
+  EXPECT_THAT(list("one"), ElementsAre("color.0002.exr"));
+}
+
+TEST_F(Input, AnInputThatNoLayerServesIsToldWithTheLayers) {
+  make_shot(1);
+  const Outcome outcome = run({"check", make_graph_with_albedo(false), text("shot/color.####.exr")});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("inputs of the graph 'two' are missing:\n  albedo (albedo)"));
+  EXPECT_THAT(outcome.err, HasSubstr("color.####.exr has the layers:\n  without a layer  (R,G,B"));
+  EXPECT_THAT(outcome.err, HasSubstr("for example: --in albedo=PATTERN:LAYER"));
+}
+
+TEST_F(Input, CanBeCropped) {
+  make_shot(1);
+  EXPECT_THAT(run({"check", make_graph(), text("shot"), "--crop", "4,2,8,3"}).out, HasSubstr(", 8 x 3, "));
+  const Outcome beyond = run({"check", make_graph(), text("shot"), "--crop", "10,0,8,3", "-q"});
+  EXPECT_EQ(beyond.code, 2);
+  EXPECT_THAT(beyond.err, HasSubstr("--crop: 10,0,8,3 is not all within the image, which is 16 x 8"));
+  for (const char* wrong : {"", "1,2,3", "1,2,3,4,5", "a,0,1,1", "0,0,0,1", "0,-1,1,1", "1;2;3;4"})
+    EXPECT_THAT(run({"check", make_graph(), text("shot"), "--crop", wrong}).err, HasSubstr("is not X,Y,WIDTH,HEIGHT in pixels"))
+        << wrong;
+}
+
+TEST_F(Input, AWindowThatIsNoneIsRefused) {
+  make_shot(1);
+  EXPECT_THAT(run({"check", make_graph(), text("shot"), "--window", "dat"}).err,
+              HasSubstr("--window: 'dat' is not possible; did you mean 'data'?"));
+}
+
 TEST_F(Input, IsLimitedToTheFramesAskedFor) {
   make_shot(6);
   EXPECT_EQ(run({"run", make_graph(), text("shot"), "-o", text("out"), "--frames", "1-6x2,6"}).code, 0);

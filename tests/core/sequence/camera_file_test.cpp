@@ -1,4 +1,5 @@
 #include "quell/sequence/camera_file.h"
+#include "quell/sequence/matrix.h"
 
 #include <cstring>
 #include <limits>
@@ -92,6 +93,17 @@ TEST_F(CameraFile, SidecarHoldsMatricesAndObjects) {
   EXPECT_EQ(camera.object_to_world.at(7)[3], 9);
 }
 
+TEST_F(CameraFile, SidecarMayHoldTheJitter) {
+  std::string text = sidecar_text(4, 3);
+  const auto with = [&](const std::string& jitter) { return "{\"jitter\": " + jitter + ", " + text.substr(1); };
+  test::make_text(folder_ / "c.json", with("[0.25, -0.5]"));
+  EXPECT_THAT(read_json_camera(folder_ / "c.json").jitter, testing::ElementsAre(0.25, -0.5));
+  test::make_text(folder_ / "c.json", text);
+  EXPECT_THAT(read_json_camera(folder_ / "c.json").jitter, testing::ElementsAre(0, 0));
+  for (const char* wrong : {"[0.5]", "0.5", "[0, 0, 0]", "[0, \"a\"]"})
+    EXPECT_THAT(json_error(with(wrong)), HasSubstr("c.json:1:12: error: expected the jitter in pixels, [x, y], found")) << wrong;
+}
+
 TEST_F(CameraFile, SidecarTellsEveryMistakeWithItsPlace) {
   const std::string message = json_error(
       "{\"width\": 0, \"world_to_camera\": [[1,2],[3,4]],\n"
@@ -124,6 +136,16 @@ TEST(Matrix, IsInvertibleUnlessItsRowsDepend) {
   EXPECT_TRUE(is_invertible({1e-3, 0, 0, 1e5, 0, 1e-3, 0, 1e5, 0, 0, 1e-3, 1e5, 0, 0, 0, 1})) << "a small scale far away";
   EXPECT_FALSE(is_invertible({1, 2, 3, 4, 2, 4, 6, 8, 0, 0, 1, 0, 0, 0, 0, 1}));
   EXPECT_FALSE(is_invertible(Matrix{}));
+}
+
+TEST(Matrix, TimesItsInverseIsOne) {
+  const Matrix m{0, 2, 0, 7, -1, 0.5, 3, 0, 0.1, 0, 4, -2, 0, 0.25, 1, 1};
+  const Matrix left = product(inverse(m), m), right = product(m, inverse(m));
+  for (std::size_t i = 0; i < 16; ++i) {
+    EXPECT_NEAR(left[i], kIdentity[i], 1e-14);
+    EXPECT_NEAR(right[i], kIdentity[i], 1e-14);
+  }
+  EXPECT_EQ(transposed(m)[12], m[3]);
 }
 
 }  // namespace

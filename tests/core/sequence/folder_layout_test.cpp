@@ -35,7 +35,7 @@ TEST_F(FolderLayoutOf, TheCourseIsRecognized) {
   EXPECT_EQ(
       summary(layout),
       "camera=matrix_%d.mat color=beauty_%d.exr depth=depth_%d.exr id=ID_%d.exr normal=normal_%d.exr position=position_%d.exr");
-  EXPECT_EQ(layout.inputs.at("id").background, -1);
+  EXPECT_EQ(layout.inputs.at("id").conventions.background, -1);
 }
 
 TEST_F(FolderLayoutOf, OurOwnRenderingsAreRecognized) {

@@ -1,11 +1,12 @@
 #include "quell/sequence/image_input.h"
 
+#include <OpenImageIO/imageio.h>
+
 #include <cmath>
 #include <cstring>
 #include <limits>
 
 #include "quell/sequence/convert.h"
-#include "quell/sequence/exr_file.h"
 #include "tests/core/sequence/test_files.h"
 
 namespace quell {
@@ -95,10 +96,10 @@ TEST_F(ImageInput, DepthWithoutSurfaceIsExactly1e10) {
 TEST_F(ImageInput, IdsAreIntegersAndTheBackgroundIsNoId) {
   const ExrContent content{.width = 4, .pixels = {-1, 0, 7, 16777216}};
   EXPECT_THAT(id_values(read(content, {QUELL_TYPE_ID})), ElementsAre(QUELL_NO_ID, 0, 7, 16777216));
-  EXPECT_THAT(id_values(read(content, {QUELL_TYPE_ID, {}, -1})), ElementsAre(QUELL_NO_ID, 0, 7, 16777216));
-  EXPECT_THAT(id_values(read({.width = 3, .pixels = {0, 1, 30}, .format = "half"}, {QUELL_TYPE_ID, {}, 0})),
+  EXPECT_THAT(id_values(read(content, {QUELL_TYPE_ID, {}, {.background = -1}})), ElementsAre(QUELL_NO_ID, 0, 7, 16777216));
+  EXPECT_THAT(id_values(read({.width = 3, .pixels = {0, 1, 30}, .format = "half"}, {QUELL_TYPE_ID, {}, {.background = 0}})),
               ElementsAre(QUELL_NO_ID, 1, 30));
-  EXPECT_THAT(id_values(read({.width = 3, .pixels = {0, 1, 16777217}, .format = "uint"}, {QUELL_TYPE_ID, {}, 0})),
+  EXPECT_THAT(id_values(read({.width = 3, .pixels = {0, 1, 16777217}, .format = "uint"}, {QUELL_TYPE_ID, {}, {.background = 0}})),
               ElementsAre(QUELL_NO_ID, 1, 16777217))
       << "which no float can hold";
   EXPECT_THAT(id_values(read({.width = 2, .pixels = {0, 1}, .format = "uint"}, {QUELL_TYPE_ID})), ElementsAre(0, 1));
@@ -109,7 +110,7 @@ TEST_F(ImageInput, IdsThatAreNoIndexAreRefusedWithTheirPixel) {
       error({.width = 2, .height = 2, .pixels = {1, 2, 3, 1.5F}}, {QUELL_TYPE_ID}),
       HasSubstr("a.exr: pixel (1, 1) holds 1.5, which is no object index (an integer from 0, or a negative number for the "
                 "background)"));
-  EXPECT_THAT(error({.pixels = {-1}}, {QUELL_TYPE_ID, {}, 0}),
+  EXPECT_THAT(error({.pixels = {-1}}, {QUELL_TYPE_ID, {}, {.background = 0}}),
               HasSubstr("pixel (0, 0) holds -1, which is no object index (an integer "
                         "from 0, or 0 for the background)"));
   EXPECT_THAT(error({.pixels = {NAN}}, {QUELL_TYPE_ID}), HasSubstr("holds nan"));
@@ -156,6 +157,15 @@ TEST_F(ImageInput, ADataWindowBesideTheImageLeavesItEmpty) {
   EXPECT_THAT(values(read(content, {QUELL_TYPE_SCALAR})), ElementsAre(0, 0));
 }
 
+TEST_F(ImageInput, SmallIntegersCannotBePlacesDistancesOrMotion) {
+  OIIO::ImageSpec spec(1, 1, 3, OIIO::TypeUInt8);
+  const auto output = OIIO::ImageOutput::create("png");
+  const std::uint8_t pixel[3] = {1, 2, 3};
+  ASSERT_TRUE(output->open((folder_ / "a.png").string(), spec) && output->write_image(OIIO::TypeUInt8, pixel) && output->close());
+  EXPECT_THAT(message_of(Fault::input, [&] { probe_image(folder_ / "a.png", {QUELL_TYPE_POSITION}); }),
+              HasSubstr("a.png: holds 8 bit integers, which say 0 to 1 and cannot be position; give files of floats"));
+}
+
 TEST_F(ImageInput, ProbingReadsTheHeaderAlone) {
   make_exr(folder_ / "a.exr", {.width = 5, .height = 4, .channels = {"R", "G", "B"}});
   EXPECT_EQ(probe_image(folder_ / "a.exr", {QUELL_TYPE_COLOR}), (Size{5, 4}));
@@ -174,7 +184,8 @@ TEST_F(ImageInput, BrokenFilesAreRefusedWithTheReason) {
   EXPECT_THAT(error_of_file("none.exr"), HasSubstr("none.exr: no such file"));
   EXPECT_THAT(error_of_file("folder.exr"), HasSubstr("folder.exr: not a file"));
   EXPECT_THAT(error_of_file("empty.exr"), HasSubstr("empty.exr: the file is empty"));
-  EXPECT_THAT(error_of_file("text.exr"), HasSubstr("text.exr: not an OpenEXR file"));
+  EXPECT_THAT(error_of_file("text.exr"),
+              HasSubstr("text.exr: not an image of a known format; OpenEXR, PNG, TIFF, Radiance HDR and PFM are read"));
   EXPECT_THAT(error_of_file("cut_header.exr"), HasSubstr("cut_header.exr: cannot be read: "));
   EXPECT_THAT(error_of_file("cut.exr"), HasSubstr("cut.exr: truncated or damaged: "));
 }

@@ -1,6 +1,8 @@
 // The sample that ships, and the larger sequences beside the repository where they are there.
+#include <algorithm>
 #include <cmath>
 
+#include "quell/sequence/matrix.h"
 #include "quell/sequence/sequence.h"
 #include "tests/core/sequence/test_files.h"
 
@@ -180,6 +182,50 @@ TEST(RoomSequence, PointsLandOnTheirPixelsCenters) {
   EXPECT_NEAR(landing.mean_y, 0.5, 1e-3);
   EXPECT_LT(landing.strays, 1e-3);
   EXPECT_LT(landing.farthest, 0.5);
+}
+
+// What Blender itself writes: all passes in one part.
+TEST(RoomMultilayer, EveryInputIsRecognizedWithoutBeingTold) {
+  SKIP_WITHOUT(kRoom);
+  const auto sequence = Sequence::open(kRoom / "multilayer/multi.%04d.exr");
+  std::string names;
+  for (const InputFiles& input : sequence->inputs()) names += input.input + " ";
+  EXPECT_EQ(names, "albedo alpha camera color depth emission id motion normal position ");
+  EXPECT_THAT(sequence->describe(),
+              testing::HasSubstr("ViewLayer.Vector: X,Y (Blender)  sign=previous-current, unit=pixels, y=up"));
+  // Four samples of a pixel are averaged; their mean lies within the pixel, where the surface is one.
+  const Landing landing = land(*sequence, 2, 0.6);
+  EXPECT_EQ(landing.pixels, 320 * 180);
+  EXPECT_NEAR(landing.mean_x, 0.5, 0.05);
+  EXPECT_NEAR(landing.mean_y, 0.5, 0.05);
+  EXPECT_LT(landing.strays, 0.02);
+}
+
+// The table's sign, unit and direction of Blender's vectors against the matrices of both frames.
+TEST(RoomMultilayer, MotionAgreesWithTheMatrices) {
+  SKIP_WITHOUT(kRoom);
+  const auto sequence = Sequence::open(kRoom / "multilayer/multi.%04d.exr");
+  BufferPool pool;
+  const Item motion = sequence->read("motion", 2, pool), position = sequence->read("position", 2, pool);
+  const Item id = sequence->read("id", 2, pool), before = sequence->read("camera", 1, pool),
+             now = sequence->read("camera", 2, pool);
+  const Camera &first = before.camera()->camera(), &second = now.camera()->camera();
+  std::vector<double> errors;
+  for (int y = 0; y < 180; ++y)
+    for (int x = 0; x < 320; ++x) {
+      const std::uint32_t object = id.image()->ids().at(x, y);
+      if (!first.object_to_world.contains(object) || !second.object_to_world.contains(object)) continue;
+      const FloatImage p = position.image()->floats(), v = motion.image()->floats();
+      const std::array<double, 4> point{p.at(x, y, 0), p.at(x, y, 1), p.at(x, y, 2), 1};
+      const auto there =
+          transform(first.object_to_world.at(object), transform(inverse(second.object_to_world.at(object)), point));
+      const auto from = transform(first.world_to_screen, there), to = transform(second.world_to_screen, point);
+      errors.push_back(
+          std::hypot(from[0] / from[3] - to[0] / to[3] - v.at(x, y, 0), from[1] / from[3] - to[1] / to[3] - v.at(x, y, 1)));
+    }
+  ASSERT_GT(errors.size(), 40000U);
+  std::sort(errors.begin(), errors.end());
+  EXPECT_LT(errors[errors.size() * 9 / 10], 0.05) << "px; edges, where samples of several surfaces are averaged, may differ";
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ TEST_F(SequenceFileText, ReadsEverything) {
   EXPECT_EQ(file.inputs.at("glow").pattern.path(3), folder_ / "sub/g_3.exr");
   EXPECT_EQ(file.inputs.at("glow").type, QUELL_TYPE_COLOR);
   EXPECT_THAT(file.inputs.at("glow").channels, ElementsAre("r.R", "r.G", "r.B"));
-  EXPECT_EQ(file.inputs.at("id").background, 0);
+  EXPECT_EQ(file.inputs.at("id").conventions.background, 0);
   EXPECT_EQ(file.inputs.at("camera").camera, CameraFormat::json);
 }
 
@@ -74,10 +74,31 @@ TEST_F(SequenceFileText, EveryMistakeIsToldAtItsPlace) {
       "s.json:5:42: error: the key \"file\" is missing; write \"file\": \"id.####.exr\"\n"
       "      \"inputs\": {\"color\": \"color.exr\", \"id\": {\"fil\": 3}}\n"
       "                                             ^\n"
-      "s.json:5:43: error: unknown key \"fil\"; did you mean 'file'?; known here: 'file', 'type', 'channels', 'background', "
-      "'format' and 'doc'\n"
+      "s.json:5:43: error: unknown key \"fil\"; did you mean 'file'?; known here: 'file', 'type', 'channels', 'format', "
+      "'doc', 'sign', 'unit', 'y', 'jitter', 'depth', 'space', 'encoding', 'background', 'alpha', 'transfer', 'vectors', "
+      "'ndc' and 'w'\n"
       "      \"inputs\": {\"color\": \"color.exr\", \"id\": {\"fil\": 3}}\n"
       "                                              ^");
+}
+
+TEST_F(SequenceFileText, ReadsConventions) {
+  const SequenceFile file = read(R"({"quell_sequence": 1, "inputs": {
+    "motion": {"file": "mv.####.exr", "unit": "uv", "sign": "current-previous", "y": "up", "jitter": "included"},
+    "n": {"file": "n.####.exr", "encoding": "unsigned", "type": "normal", "space": "camera"},
+    "color": {"file": "c.####.png", "transfer": "linear"}}})");
+  EXPECT_EQ(describe(file.inputs.at("motion").conventions), "sign=current-previous, unit=uv, y=up, jitter=included");
+  EXPECT_EQ(describe(file.inputs.at("n").conventions), "space=camera, encoding=unsigned");
+  EXPECT_EQ(describe(file.inputs.at("color").conventions), "transfer=linear");
+}
+
+TEST_F(SequenceFileText, ChecksConventions) {
+  EXPECT_THAT(input_error("\"motion\": {\"file\": \"a_%d.exr\", \"unit\": \"pixel\"}"),
+              HasSubstr("s.json:1:73: error: unit must be 'pixels', 'uv' or 'ndc', found 'pixel'; did you mean 'pixels'?"));
+  EXPECT_THAT(input_error("\"motion\": {\"file\": \"a_%d.exr\", \"unit\": 1}"),
+              HasSubstr("expected 'pixels', 'uv' or 'ndc', found 1"));
+  EXPECT_THAT(input_error("\"depth\": {\"file\": \"a_%d.exr\", \"sign\": \"previous-current\"}"),
+              HasSubstr("sign is a convention of motion, not of depth"));
+  EXPECT_THAT(input_error("\"motion\": {\"file\": \"a_%d.exr\", \"sing\": \"x\"}"), HasSubstr("did you mean 'sign'?"));
 }
 
 TEST_F(SequenceFileText, RequiresVersionAndInputs) {
@@ -102,11 +123,11 @@ TEST_F(SequenceFileText, ChecksEachInput) {
   EXPECT_THAT(input_error("\"color\": {\"file\": \"a_%d.exr\", \"channels\": \"RGB\"}"),
               HasSubstr("expected a list of channel names"));
   EXPECT_THAT(input_error("\"color\": {\"file\": \"a_%d.exr\", \"background\": 0}"),
-              HasSubstr("only an id has a background value"));
+              HasSubstr("background is a convention of id, not of color"));
   EXPECT_THAT(input_error("\"id\": {\"file\": \"a_%d.exr\", \"background\": 0.5}"), HasSubstr("expected an integer"));
   EXPECT_THAT(input_error("\"color\": {\"file\": \"a_%d.exr\", \"format\": \"mat\"}"), HasSubstr("only a camera has a format"));
   EXPECT_THAT(input_error("\"camera\": {\"file\": \"a_%d.mat\", \"format\": \"xml\"}"),
-              HasSubstr("expected \"json\" or \"mat\""));
+              HasSubstr("expected \"json\", \"mat\" or \"header\""));
   EXPECT_THAT(input_error("\"a\": \"a_%d.exr\", \"a\": \"b_%d.exr\""), HasSubstr("s.json:1:"));
 }
 

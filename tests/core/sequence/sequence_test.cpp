@@ -106,6 +106,24 @@ TEST_F(SequenceOf, AnInputThatIsNotThereIsToldWithWhatIs) {
               HasSubstr("z_%d.exr: there is no file of this name for the input 'depth' (--in depth="));
 }
 
+TEST_F(SequenceOf, AConventionThatTheGraphsTypeDoesNotHaveIsRefused) {
+  make_image("flow.0001.exr", {"X", "Y"}, 0.5F);
+  const std::string option = "flow=" + path("flow.####.exr") + ":unit=uv";
+  const auto sequence = open({option});
+  sequence->expect("flow", QUELL_TYPE_MOTION);
+  EXPECT_THAT(test::values(*read("flow", 1, *sequence).image()),
+              testing::UnorderedElementsAre(2, 2, 2, 2, 2, 2, 2, 2, 1, 1, 1, 1, 1, 1, 1, 1));
+  const auto other = open({option});
+  other->expect("flow", QUELL_TYPE_MOMENTS);
+  EXPECT_EQ(read_error("flow", 1, *other), "--in " + option + ": unit is a convention of motion, not of moments");
+}
+
+TEST_F(SequenceOf, WhatNeedsACameraNamesTheSequenceWithoutOne) {
+  make_image("depth.0001.exr", {"Z"}, 3);
+  EXPECT_THAT(read_error("depth", 1, *open({"depth=" + path("depth.####.exr") + ":depth=ray"})),
+              HasSubstr("the sequence has no camera; add one with --in camera=PATTERN"));
+}
+
 TEST_F(SequenceOf, OptionsAddAndOverrideAndResolveAmbiguities) {
   make_color("beauty_1.exr", 1);
   make_color("color.0001.exr", 2);

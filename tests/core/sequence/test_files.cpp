@@ -30,7 +30,9 @@ std::vector<std::string> TempFolder::names() const {
   return names;
 }
 
-void make_exr(const fs::path& file, const ExrContent& content) {
+namespace {
+
+OIIO::ImageSpec spec_of(const ExrContent& content) {
   OIIO::ImageSpec spec(content.width, content.height, static_cast<int>(content.channels.size()), OIIO::TypeDesc(content.format));
   spec.channelnames = content.channels;
   spec.x = content.x, spec.y = content.y;
@@ -39,16 +41,40 @@ void make_exr(const fs::path& file, const ExrContent& content) {
   spec.full_height = content.full_height ? content.full_height : content.height;
   spec.tile_width = spec.tile_height = content.tile;
   spec.attribute("compression", "zip");
+  for (const auto& [name, numbers] : content.matrices) {
+    const std::vector<float> floats(numbers.begin(), numbers.end());
+    spec.attribute(name, OIIO::TypeMatrix44, floats.data());
+  }
+  if (!content.part.empty()) spec.attribute("oiio:subimagename", content.part);
+  if (content.pixel_aspect != 1) spec.attribute("PixelAspectRatio", content.pixel_aspect);
+  return spec;
+}
+
+bool write_pixels(OIIO::ImageOutput& output, const ExrContent& content) {
   std::vector<double> pixels = content.pixels;
   pixels.resize(static_cast<std::size_t>(content.width) * static_cast<std::size_t>(content.height) * content.channels.size());
+  if (content.format != "uint") return output.write_image(OIIO::TypeDesc::DOUBLE, pixels.data());
+  const std::vector<std::uint32_t> integers(pixels.begin(), pixels.end());
+  return output.write_image(OIIO::TypeUInt32, integers.data());
+}
+
+}  // namespace
+
+void make_parts(const fs::path& file, const std::vector<ExrContent>& parts) {
+  std::vector<OIIO::ImageSpec> specs;
+  for (const ExrContent& part : parts) specs.push_back(spec_of(part));
   const auto output = OIIO::ImageOutput::create("openexr");
-  bool ok = output->open(file.string(), spec);
-  if (content.format == "uint") {
-    const std::vector<std::uint32_t> integers(pixels.begin(), pixels.end());
-    ok = ok && output->write_image(OIIO::TypeUInt32, integers.data());
-  } else {
-    ok = ok && output->write_image(OIIO::TypeDesc::DOUBLE, pixels.data());
+  bool ok = output->open(file.string(), static_cast<int>(specs.size()), specs.data());
+  for (std::size_t i = 0; ok && i < parts.size(); ++i) {
+    if (i > 0) ok = output->open(file.string(), specs[i], OIIO::ImageOutput::AppendSubimage);
+    ok = ok && write_pixels(*output, parts[i]);
   }
+  if (!ok || !output->close()) throw std::runtime_error("the test cannot write " + file.string() + ": " + output->geterror());
+}
+
+void make_exr(const fs::path& file, const ExrContent& content) {
+  const auto output = OIIO::ImageOutput::create("openexr");
+  const bool ok = output->open(file.string(), spec_of(content)) && write_pixels(*output, content);
   if (!ok || !output->close()) throw std::runtime_error("the test cannot write " + file.string() + ": " + output->geterror());
 }
 

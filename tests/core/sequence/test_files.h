@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -38,7 +39,13 @@ struct ExrContent {
   int x = 0, y = 0;                     ///< of the data window
   int full_width = 0, full_height = 0;  ///< display window at (0, 0); 0: that of the data
   int tile = 0;                         ///< tile size; 0: scan lines
+  std::string part = {};                ///< its name, among several
+  float pixel_aspect = 1;
+  /// Matrices of the header, by name; the 16 numbers in this order.
+  std::vector<std::pair<std::string, std::array<double, 16>>> matrices = {};
 };
+/// Several parts in one file. Their display windows have to be equal.
+void make_parts(const std::filesystem::path& file, const std::vector<ExrContent>& parts);
 void make_exr(const std::filesystem::path& file, const ExrContent& content);
 void make_text(const std::filesystem::path& file, const std::string& text);
 std::string read_bytes(const std::filesystem::path& file);
