@@ -10,6 +10,7 @@
 #include "commands.h"
 #include "graphviz.h"
 #include "job.h"
+#include "quell/graph/graph_hash.h"
 #include "quell/graph/plan_dot.h"
 #include "quell/text/diagnostic.h"
 #include "run_options.h"
@@ -59,11 +60,13 @@ InputShapes imagine_inputs(const Graph& graph, Size size, const std::vector<std:
   return shapes;
 }
 
+void print(const Plan& plan) { std::cout << describe(plan) << "\nhash\n  " << graph_hash(*plan.graph) << "\n" << std::flush; }
+
 ExitCode describe_and_analyze(const std::shared_ptr<const Graph>& graph, const Arguments& arguments, Console& console) {
   const int threads = parse_schedule({.threads = arguments.threads}).threads;
   Job job = prepare_job(graph, arguments.sequence);
   if (!arguments.sequence.frames && job.frames.size() > kMeasuredFrames) job.frames.resize(kMeasuredFrames);
-  std::cout << describe(job.plan) << std::flush;
+  print(job.plan);
   return analyze_job(job, threads, console);
 }
 
@@ -94,7 +97,7 @@ ExitCode run(const Arguments& arguments, Console& console) {
   if (arguments.dot || arguments.svg)
     draw(plan, arguments);
   else
-    std::cout << describe(plan);
+    print(plan);
   return kOk;
 }
 
@@ -118,7 +121,7 @@ Command add_graph(CLI::App& program) {
       "Example:\n"
       "  quell graph games202 --size 3840x2160\n"
       "lists the nodes in the order in which they run, what each reads and writes, and how much memory a run takes at that "
-      "size.\n"
+      "size; the hash at the end tells graphs with other results apart.\n"
       "  quell graph games202 shot/ --analyze\n"
       "measures, too, how long each node takes on the first 6 frames, and tells what bounds the frames per second.\n"
       "  quell graph games202 --svg -o games202.svg\n"

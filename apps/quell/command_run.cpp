@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "interrupt.h"
 #include "job.h"
+#include "output_options.h"
 #include "progress.h"
 #include "quell/runtime/session.h"
 #include "quell/runtime/window.h"
@@ -25,33 +26,11 @@ struct Arguments {
   SequenceArguments sequence;
   ScheduleArguments schedule;
   VerbosityArguments verbosity;
-  std::filesystem::path out;
-  std::string type = "auto";
-  std::string compression = "zip";
-  std::string padding;
-  std::vector<std::string> formats;
+  OutputArguments output;
   std::vector<std::string> dumps;
   std::optional<std::filesystem::path> log_json, trace;
   bool dry_run = false;
 };
-
-/// Throws Error(usage) for what cannot be. Without --padding the digits are still to be taken from the sequence.
-FileSinkOptions parse_output(const Arguments& arguments) {
-  FileSinkOptions options;
-  if (arguments.out.empty()) throw Error(Fault::usage, "--out", "the name is empty; name a folder for the results");
-  options.folder = arguments.out;
-  options.type = parse_pixel_type(arguments.type);
-  options.compression = arguments.compression;
-  if (!arguments.padding.empty()) options.padding = parse_count(arguments.padding, "--padding", 1, 20);
-  if (!arguments.formats.empty()) options.formats.clear();
-  for (const std::string& format : arguments.formats) {
-    const FileFormat parsed = parse_file_format(format);
-    if (std::find(options.formats.begin(), options.formats.end(), parsed) == options.formats.end())
-      options.formats.push_back(parsed);
-  }
-  const FileSink checked(options);  // it knows the compressions
-  return options;
-}
 
 void log_of_pass(int level, const std::string& message) {
   spdlog::log(level >= QUELL_LOG_WARNING ? spdlog::level::warn
@@ -134,12 +113,13 @@ ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log,
 Preparation prepare(const Arguments& arguments) {
   SessionOptions options = parse_schedule(arguments.schedule);
   options.dumps = arguments.dumps;
-  FileSinkOptions output = parse_output(arguments);
+  FileSinkOptions output = parse_output(arguments.output);
   Job job = prepare_job(load(arguments.graph), arguments.sequence, arguments.dumps);
-  if (arguments.padding.empty()) output.padding = job.sequence->padding();
+  complete_output(output, arguments.output, job);
   auto sink = std::make_unique<FileSink>(output);
   std::vector<ResultFiles> results = list_results(job, *sink, output);
   refuse_to_replace_inputs(job, results);
+  if (output.keep_channels) tell_kept_channels(*sink, job);
   return {std::move(job), std::move(sink), std::move(results), std::move(options)};
 }
 
@@ -153,7 +133,7 @@ ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console) {
     return kOk;
   }
   spdlog::debug("up to {} frames at a time ({}), and {} of images", window.frames, window.reason, format_bytes(window.memory));
-  prepare_folder(arguments.out);
+  prepare_folder(arguments.output.folder);
   log.start(run.job, run.results, options, window);
   std::optional<TraceFile> trace;
   if (arguments.trace) trace.emplace(*arguments.trace);
@@ -179,22 +159,7 @@ ExitCode run(const Arguments& arguments, Console& console) {
 }
 
 void add_output_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("-o,--out", arguments.out, "The folder for the results; made when needed.")
-      ->type_name("FOLDER")
-      ->required()
-      ->group(kOutputGroup);
-  add_text(app, "--type", arguments.type, "TYPE",
-           "Numbers in EXR files: half, float, or auto: half for color and albedo, float for all else.")
-      ->group(kOutputGroup);
-  add_text(app, "--compression", arguments.compression, "METHOD",
-           "Of EXR files: none, rle, zips, zip (the default), piz, pxr24, b44, b44a, dwaa or dwab.")
-      ->group(kOutputGroup);
-  add_repeatable(app, "--format", arguments.formats, "FORMAT",
-                 "exr (the default) or png (8 bit, sRGB, clamped); repeat it to write both.")
-      ->group(kOutputGroup);
-  add_text(app, "--padding", arguments.padding, "DIGITS",
-           "Digits of the frame numbers in file names; as in the input, or 4 where that is not padded.")
-      ->group(kOutputGroup);
+  add_options(app, arguments.output);
   add_repeatable(app, "--dump", arguments.dumps, "NODE.PORT", "Write an inner image of the graph, too; repeatable.")
       ->group(kOutputGroup);
   app.add_option("--log-json", arguments.log_json, "Write what happens to a file, one JSON object a line, as it happens.")

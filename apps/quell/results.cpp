@@ -32,7 +32,8 @@ ResultFiles list_series(const Job& job, const FileSink& sink, const FileSinkOpti
   for (const std::int64_t frame : job.frames) series.files.push_back(sink.files(result.name, frame, result.type)[format]);
   const std::string digits(static_cast<std::size_t>(options.padding), '#');
   const std::string extension = series.files.front().extension().string();
-  series.pattern = (options.folder / (result.name + "." + digits + extension)).string();
+  const bool is_layer = !options.layers.empty() && extension == ".exr";
+  series.pattern = (options.folder / ((is_layer ? options.layers : result.name) + "." + digits + extension)).string();
   return series;
 }
 
@@ -53,7 +54,11 @@ std::vector<ResultFiles> list_results(const Job& job, const FileSink& sink, cons
   std::vector<ResultFiles> all;
   for (const Result& result : find_results(job.plan)) {
     const std::size_t formats = sink.files(result.name, job.frames.front(), result.type).size();
-    for (std::size_t format = 0; format < formats; ++format) all.push_back(list_series(job, sink, options, result, format));
+    for (std::size_t format = 0; format < formats; ++format) {
+      ResultFiles series = list_series(job, sink, options, result, format);
+      const auto is_it = [&](const ResultFiles& other) { return other.pattern == series.pattern; };
+      if (std::none_of(all.begin(), all.end(), is_it)) all.push_back(std::move(series));  // layers share their files
+    }
   }
   return all;
 }

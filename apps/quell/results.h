@@ -12,7 +12,7 @@
 
 namespace quell::app {
 
-/// One series of files: an output or a dump in one format.
+/// One series of files: an output or a dump in one format, or all of them as layers.
 struct ResultFiles {
   std::string pattern;                       ///< "out/color.####.exr"
   std::vector<std::filesystem::path> files;  ///< of each frame

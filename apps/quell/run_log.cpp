@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "json_lines.h"
+#include "quell/graph/graph_hash.h"
 #include "quell/sdk/abi.h"
 
 namespace quell::app {
@@ -81,6 +82,7 @@ void RunLog::start(const Job& job, const std::vector<ResultFiles>& results, cons
                                    .text("version", QUELL_VERSION)
                                    .text("graph", job.graph->file.string())
                                    .text("name", job.graph->name)
+                                   .text("graph_hash", graph_hash(*job.graph))
                                    .text("sequence", job.sequence->describe())
                                    .object("inputs", inputs)
                                    .texts("outputs", outputs)

@@ -31,7 +31,7 @@ class FrameSink {
  public:
   virtual ~FrameSink() = default;
   /// `output` is the name of a graph output, or "node.port" of an inner image that was asked for ("input.color" for a graph
-  /// input). Throws Error when it cannot be written.
+  /// input). Throws Error when it cannot be written; no other output of that frame follows then.
   virtual void write(std::string_view output, std::int64_t frame, const Item& item) = 0;
   /// As FrameSource::uses_processor, for writing.
   virtual bool uses_processor() const { return false; }

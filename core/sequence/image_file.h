@@ -68,6 +68,8 @@ class ImageFile {
   void read(int channel, const Rectangle& window, IdOutput out);
 
   struct State;  ///< private to core/sequence
+  State& state() { return *state_; }
+  const State& state() const { return *state_; }
 
  private:
   std::unique_ptr<State> state_;

@@ -1,4 +1,4 @@
-// One item to one file.
+// Images and other items to files. Private to core/sequence.
 #pragma once
 
 #include <cstdint>
@@ -7,20 +7,44 @@
 #include <vector>
 
 #include "quell/image/item.h"
+#include "quell/sequence/file_sink.h"
+#include "quell/sequence/original_file.h"
 
 namespace quell {
 
-/// The names of a type's planes in a file: R,G,B for color and albedo, X,Y,Z for normal and position, and so on.
-std::vector<std::string> channel_names(PortType type);
+/// The names of a type's planes in a file: R,G,B for color and albedo, X,Y,Z for normal and position, and so on; with a layer,
+/// "normal.X", "normal.Y", "normal.Z".
+std::vector<std::string> channel_names(PortType type, const std::string& layer = "");
 
-/// Writes an EXR file of half or float channels (ids: uint). With `half`, values beyond +-65504 are clamped to it; the number of
-/// pixels in which that happened is returned. The same image gives the same bytes. Throws Error(frame).
-std::uint64_t write_exr(const Image& image, const std::filesystem::path& file, bool half, const std::string& compression);
+/// An image in a file.
+struct WrittenLayer {
+  Image image;
+  std::string name;   ///< before the names of its channels; "": nothing
+  bool half = false;  ///< numbers of 16 bits instead of 32; ids are uint
+};
+
+/// What a file holds.
+struct FileContent {
+  std::vector<WrittenLayer> layers;  ///< images of one size
+  std::int64_t frame = 0;
+  OriginalFile* original = nullptr;  ///< for attributes and windows
+  bool keep_channels = false;        ///< of `original`
+};
+
+/// Where the layers lie. Throws Error(frame) when channels are to be kept that have another size.
+Placement place(const FileContent& content);
+/// Those of the original, those of the options, and the frame.
+void add_attributes(OIIO::ImageSpec& spec, const FileContent& content, const FileSinkOptions& options);
+
+/// Writes an EXR file. With `half`, values beyond +-65504 are clamped to it; the number of pixels in which that happened is
+/// returned. The same content gives the same bytes. Throws Error(frame), Error(input) when `original` cannot be read.
+std::uint64_t write_exr(const FileContent& content, const FileSinkOptions& options, const std::filesystem::path& file);
 
 /// Whether a PNG can show the type: color, albedo, and single planes of floats (as gray).
 bool png_can_hold(PortType type);
-/// Writes an 8-bit PNG with the sRGB transfer curve; values are clamped to 0..1, NaN is 0. Throws Error(frame).
-void write_png(const Image& image, const std::filesystem::path& file);
+/// Writes the only layer as an 8-bit PNG with the sRGB transfer curve; values are clamped to 0..1, NaN is 0. Alpha of `original`
+/// is kept with a picture of three channels, which is divided by it, since PNG wants it so. Throws as write_exr() does.
+void write_png(const FileContent& content, const FileSinkOptions& options, const std::filesystem::path& file);
 /// The sRGB transfer curve (IEC 61966-2-1), rounded to 8 bits.
 std::uint8_t to_srgb8(float linear);
 

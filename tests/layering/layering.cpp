@@ -28,11 +28,12 @@ const std::map<std::string, Names, std::less<>> kMayInclude = {
 
 // Third-party headers by the first part of their path, and where they may appear.
 const std::map<std::string, Names, std::less<>> kThirdParty = {
-    {"nlohmann", {"core/text"}}, {"OpenImageIO", {"core/sequence"}},
-    {"tbb", {"core/runtime"}},   {"oneapi", {"core/runtime"}},
-    {"OpenColorIO", {"passes"}}, {"hwy", {"passes"}},
-    {"spdlog", {"apps"}},        {"CLI", {"apps"}},
-    {"gtest", {"core/testing"}}, {"gmock", {"core/testing"}},
+    {"nlohmann", {"core/text"}},  {"OpenImageIO", {"core/sequence"}},
+    {"tbb", {"core/runtime"}},    {"oneapi", {"core/runtime"}},
+    {"OpenColorIO", {"passes"}},  {"hwy", {"passes"}},
+    {"spdlog", {"apps"}},         {"CLI", {"apps"}},
+    {"xxhash.h", {"core/graph"}}, {"gtest", {"core/testing"}},
+    {"gmock", {"core/testing"}},
 };
 
 // The operating system's headers. The SDK and the passes do without.
