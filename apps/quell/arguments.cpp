@@ -45,6 +45,12 @@ void add_options(CLI::App& app, GraphArguments& arguments) {
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->group(kGraphGroup);
+  add_repeatable(app, "--swap", arguments.options.swap, "NODE=PASS",
+                 "Let a node run another pass, with the sources and parameters that it has, too; repeatable.")
+      ->group(kGraphGroup);
+  add_repeatable(app, "--bypass", arguments.options.bypass, "NODE",
+                 "Let whoever reads a node read what it reads, of the same type, instead; repeatable.")
+      ->group(kGraphGroup);
   add_options(app, arguments.plugins);
 }
 

@@ -6,10 +6,12 @@
 
 #include "arguments.h"
 #include "commands.h"
+#include "graph_files.h"
 #include "interrupt.h"
 #include "job.h"
 #include "output_options.h"
 #include "progress.h"
+#include "quell/runtime/rerun.h"
 #include "quell/runtime/session.h"
 #include "quell/runtime/window.h"
 #include "results.h"
@@ -17,6 +19,8 @@
 #include "run_options.h"
 #include "run_summary.h"
 #include "trace_file.h"
+#include "variants.h"
+#include "watched_files.h"
 
 namespace quell::app {
 namespace {
@@ -29,7 +33,7 @@ struct Arguments {
   OutputArguments output;
   std::vector<std::string> dumps;
   std::optional<std::filesystem::path> log_json, trace;
-  bool dry_run = false;
+  bool dry_run = false, watch = false;
 };
 
 void log_of_pass(int level, const std::string& message) {
@@ -71,7 +75,20 @@ struct Preparation {
   SessionOptions options;
 };
 
-ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log, Console& console) {
+/// Runs that follow each other.
+struct Watch {
+  explicit Watch(const GraphArguments& graph) : passes(load_passes(graph.plugins)) {
+    files.add({find_graph(graph.graph)});
+    files.add(graph.options.params);
+  }
+  Registry passes;
+  WatchedFiles files;
+  Rerun rerun;
+  std::optional<Preparation> last;  ///< of the last run
+};
+
+/// With `watch`, computes what has changed since its last run.
+ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log, Console& console, Watch* watch) {
   Job& job = run.job;
   SessionOptions options = run.options;
   options.log = [&](int level, const std::string& message) {
@@ -81,40 +98,47 @@ ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log,
   };
   options.cancelled = interrupted;
   options.trace = trace ? &trace->trace() : nullptr;
-  Session* running = nullptr;
+  std::optional<Session> session;
   Progress progress(console, job.frames.size());
   options.on_frame = [&](const FrameReport& report) {
-    const BufferPool::Usage usage = running->pool().usage();
+    const BufferPool::Usage usage = watch ? watch->rerun.usage() : session->pool().usage();
     progress.frame_done(report, usage.in_use + usage.idle);
     log.frame(report, job.plan, usage);
   };
-  Session session(job.graph, options);
-  running = &session;
-  const std::vector<FrameReport> reports = session.run(job.frames, *job.sequence, *run.sink);
+  RerunReport rerun;
+  if (watch) {
+    rerun = watch->rerun.run(job.graph, job.frames, *job.sequence, *run.sink, options);
+  } else {
+    rerun.frames = session.emplace(job.graph, options).run(job.frames, *job.sequence, *run.sink);
+    rerun.peak_bytes = session->pool().usage().peak;
+  }
+  const std::vector<FrameReport>& reports = rerun.frames;
   console.set_status("");
 
   tell_new_warnings(job);
-  FrameSets frames = sort_frames(job.frames, reports);
+  if (watch) tell_computed(rerun, !watch->last);
+  const bool is_all_kept = watch && rerun.results.empty();
+  const std::vector<ResultFiles> written = watch ? select_results(run.results, rerun) : run.results;
+  FrameSets frames = is_all_kept ? FrameSets{job.frames, {}, {}} : sort_frames(job.frames, reports);
   const Ending ending = ending_of(frames, options.stop_on_error);
-  const RunOutcome outcome = {job,
-                              run.results,
-                              reports,
-                              std::move(frames),
-                              ending,
-                              run.sink->clamped_pixels(),
-                              progress.seconds(),
-                              session.pool().usage().peak};
-  tell_outcome(outcome);
+  const RunOutcome outcome = {
+      job, written, reports, std::move(frames), ending, run.sink->clamped_pixels(), progress.seconds(), rerun.peak_bytes};
+  if (!is_all_kept) tell_outcome(outcome);
   const ExitCode code = finish_trace(trace, exit_code_of(ending));
   log.end(outcome, code);
   return code;
 }
 
-Preparation prepare(const Arguments& arguments) {
+Preparation prepare(const Arguments& arguments, Watch* watch) {
   SessionOptions options = parse_schedule(arguments.schedule);
   options.dumps = arguments.dumps;
   FileSinkOptions output = parse_output(arguments.output);
-  Job job = prepare_job(load(arguments.graph), arguments.sequence, arguments.dumps);
+  const std::shared_ptr<const Graph> graph = watch ? load(arguments.graph, watch->passes) : load(arguments.graph);
+  if (watch) watch->files.add(graph->files);
+  const Job* before = watch && watch->last ? &watch->last->job : nullptr;
+  const bool stays_open = before && same_inputs(*before->graph, *graph);
+  Job job = prepare_job(graph, arguments.sequence, arguments.dumps, stays_open ? before->sequence : nullptr);
+  if (before && !same_files(*before, job)) watch->rerun.forget();
   complete_output(output, arguments.output, job);
   auto sink = std::make_unique<FileSink>(output);
   std::vector<ResultFiles> results = list_results(job, *sink, output);
@@ -123,8 +147,8 @@ Preparation prepare(const Arguments& arguments) {
   return {std::move(job), std::move(sink), std::move(results), std::move(options)};
 }
 
-ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console) {
-  Preparation run = prepare(arguments);
+ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, Watch* watch = nullptr) {
+  Preparation run = prepare(arguments, watch);
   const SessionOptions& options = run.options;
   const int threads = options.threads > 0 ? options.threads : available_threads();
   const Window window = choose_window(run.job.plan, threads, options.frames_in_flight, options.memory);
@@ -137,10 +161,34 @@ ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console) {
   log.start(run.job, run.results, options, window);
   std::optional<TraceFile> trace;
   if (arguments.trace) trace.emplace(*arguments.trace);
-  const ExitCode code = compute(run, trace, log, console);
+  if (watch && watch->last) tell_left_files(watch->last->results, run.results);
+  const ExitCode code = compute(run, trace, log, console, watch);
+  if (watch) watch->last = std::move(run);
   if (log.ok()) return code;
   spdlog::error("--log-json: {} could not be written", arguments.log_json->string());
   return code == kOk ? kInternal : code;
+}
+
+/// Runs, and again whenever the graph is saved, until a signal comes: between runs that is a good end.
+ExitCode run_watching(const Arguments& arguments, RunLog& log, Console& console) {
+  if (arguments.dry_run) throw Error(Fault::usage, "--watch", "there is nothing to watch with --dry-run; leave one of them out");
+  if (arguments.trace) throw Error(Fault::usage, "--watch", "--trace is for a single run; leave one of them out");
+  Watch watch(arguments.graph);
+  ExitCode code = run_logged(arguments, log, console, &watch);
+  bool is_right = true;
+  while (code != kInterrupted) {
+    spdlog::info("waiting for {} to be saved; Ctrl-C ends", watch.last->job.graph->file.string());
+    if (!watch.files.wait(!is_right, interrupt_event())) return kOk;
+    try {
+      code = run_logged(arguments, log, console, &watch);
+      is_right = true;
+    } catch (const Error& error) {
+      spdlog::error(error.what());
+      log.end(error.what(), exit_code(error.fault()));
+      is_right = false;
+    }
+  }
+  return code;
 }
 
 ExitCode run(const Arguments& arguments, Console& console) {
@@ -148,7 +196,7 @@ ExitCode run(const Arguments& arguments, Console& console) {
   set_verbosity(arguments.verbosity.verbosity());
   RunLog log(arguments.dry_run ? std::nullopt : arguments.log_json);
   try {
-    return run_logged(arguments, log, console);
+    return arguments.watch ? run_watching(arguments, log, console) : run_logged(arguments, log, console);
   } catch (const Error& error) {
     log.end(error.what(), exit_code(error.fault()));
     throw;
@@ -187,6 +235,11 @@ Command add_run(CLI::App& program) {
   add_options(app, arguments->sequence);
   add_output_options(app, *arguments);
   add_options(app, arguments->schedule);
+  app.add_flag("--watch", arguments->watch,
+               "After the run wait until the graph file, one that it includes or a --params file is saved, and compute anew what "
+               "that can affect; Ctrl-C ends.")
+      ->disable_flag_override()
+      ->group(kOtherGroup);
   app.add_flag("-n,--dry-run", arguments->dry_run, "Say what would be read, run and written, and stop there.")
       ->disable_flag_override()
       ->group(kOtherGroup);

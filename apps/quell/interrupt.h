@@ -8,5 +8,7 @@ namespace quell::app {
 void handle_interrupts();
 /// Whether one of the signals came. From any thread.
 bool interrupted();
+/// A file descriptor that can be read from then on, so that poll() can wait for it.
+int interrupt_event();
 
 }  // namespace quell::app

@@ -141,9 +141,12 @@ InputShapes shapes_of(const Graph& graph, FrameSource& source) {
 
 }  // namespace
 
-std::shared_ptr<const Graph> load(const GraphArguments& arguments) {
-  const std::filesystem::path file = find_graph(arguments.graph);
-  return load_graph(file, load_passes(arguments.plugins), arguments.options);
+std::shared_ptr<const Graph> load(const GraphArguments& arguments) { return load(arguments, load_passes(arguments.plugins)); }
+
+std::shared_ptr<const Graph> load(const GraphArguments& arguments, const Registry& passes) {
+  std::shared_ptr<const Graph> graph = load_graph(find_graph(arguments.graph), passes, arguments.options);
+  for (const std::string& edit : graph->edits) spdlog::info(edit);
+  return graph;
 }
 
 void tell_new_warnings(Job& job) {
@@ -151,13 +154,14 @@ void tell_new_warnings(Job& job) {
     if (job.told.insert(warning).second) spdlog::warn(warning);
 }
 
-Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arguments, const std::vector<std::string>& dumps) {
+Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arguments, const std::vector<std::string>& dumps,
+                std::shared_ptr<Sequence> opened) {
   require_known_names(*graph, arguments);
   require_known_dumps(*graph, dumps);
   Job job;
   job.graph = graph;
-  job.sequence = open_sequence(*graph, arguments);
-  spdlog::info(job.sequence->describe());
+  job.sequence = opened ? opened : open_sequence(*graph, arguments);
+  if (!opened) spdlog::info(job.sequence->describe());
   tell_new_warnings(job);  // at once: they may explain the error that follows
   const std::vector<InputFiles> found = job.sequence->inputs();
   const std::string place = arguments.sequence.empty() ? "--in" : arguments.sequence.string();

@@ -29,6 +29,7 @@ std::vector<Result> find_results(const Plan& plan) {
 ResultFiles list_series(const Job& job, const FileSink& sink, const FileSinkOptions& options, const Result& result,
                         std::size_t format) {
   ResultFiles series;
+  series.result = result.name;
   for (const std::int64_t frame : job.frames) series.files.push_back(sink.files(result.name, frame, result.type)[format]);
   const std::string digits(static_cast<std::size_t>(options.padding), '#');
   const std::string extension = series.files.front().extension().string();

@@ -14,6 +14,7 @@ namespace quell::app {
 
 /// One series of files: an output or a dump in one format, or all of them as layers.
 struct ResultFiles {
+  std::string result;                        ///< its name, as the sink is told
   std::string pattern;                       ///< "out/color.####.exr"
   std::vector<std::filesystem::path> files;  ///< of each frame
 };

@@ -1,7 +1,10 @@
 #include "quell/graph/graph.h"
 
+#include <algorithm>
+
 #include "quell/graph/absent.h"
 #include "quell/graph/build.h"
+#include "quell/graph/edits.h"
 #include "quell/graph/follow_type.h"
 #include "quell/graph/outside.h"
 #include "quell/graph/types.h"
@@ -79,14 +82,20 @@ std::shared_ptr<const Graph> parse_graph(const SourceTextPtr& source, const Regi
   Diagnostics errors;
   const std::unique_ptr<detail::Unfolded> unfolded = detail::unfold(source, passes, errors);
   if (!unfolded) errors.throw_if_any();
+  detail::Edits edits(*unfolded, passes, errors);
+  edits.apply(options);
   detail::Settings settings(*unfolded, errors);
   settings.apply_files();
   for (const detail::Setting& setting : detail::read_outside(options, errors)) settings.apply(setting);
   const detail::Connections connections = detail::connect(*unfolded, errors);
   detail::check_types(*unfolded, connections, errors);
   const std::vector<bool> left_out = detail::leave_out_absent(*unfolded, connections, errors);
-  std::shared_ptr<const Graph> graph = detail::build(*unfolded, connections, left_out, errors);
-  errors.throw_if_any();
+  const std::shared_ptr<Graph> graph = detail::build(*unfolded, connections, left_out, errors);
+  edits.throw_if_any();
+  graph->edits = edits.describe();
+  for (const auto& [file, document] : unfolded->documents)
+    if (document) graph->files.push_back(document->source->name);
+  std::ranges::stable_partition(graph->files, [&](const std::filesystem::path& file) { return file == graph->file; });
   return graph;
 }
 

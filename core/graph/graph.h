@@ -74,6 +74,8 @@ struct Graph {
   std::vector<Node> nodes;  ///< same-frame edges lead from earlier to later ones; ties in the order of the file
   std::vector<GraphOutput> outputs;
   std::vector<GraphOutput> subgraph_outputs;  ///< other names for some endpoints: "svgf.color"
+  std::vector<std::filesystem::path> files;   ///< that it was read from: its own, then those of its subgraphs
+  std::vector<std::string> edits;             ///< what GraphOptions changed, left out or replaced, for people; a line each
 
   /// "filter.color", or "color" for a graph input; "[1]" is added for elements of arrays.
   std::string describe(const Endpoint& endpoint) const;
@@ -83,13 +85,21 @@ struct Graph {
   Endpoint find(std::string_view wanted) const;
 };
 
-/// Values from outside the file, later ones winning: first the files, then the single settings. Nodes of subgraphs have qualified
-/// names ("svgf.atrous0.phi_color"); a parameter of the graph itself stands without a node.
+/// What is changed from outside the file: first the passes, then what is short-circuited; then values, later ones winning: first
+/// the files, then the single settings. Nodes of subgraphs have qualified names ("svgf.atrous0.phi_color"); a parameter of the
+/// graph itself stands without a node.
 struct GraphOptions {
   /// From --set: `node.param=value`, the value as JSON, or plain text. Relative paths are taken from the current folder.
   std::vector<std::string> set;
   /// From --params: JSON files, {"node.param": value} or {"node": {"param": value}}. Relative paths are taken from their folder.
   std::vector<std::filesystem::path> params;
+  /// From --swap: `node=pass`. The node keeps the sources that the other pass has an input for, by name, and the parameters that
+  /// both have, of equal type, where the value is possible. What is left out is told in Graph::edits. An error where a required
+  /// input has no source, or an output that is read has no counterpart.
+  std::vector<std::string> swap = {};
+  /// From --bypass: `node`. Who reads an output of the node reads the input that it is the same as instead, or else the one of
+  /// equal type, one of equal name first. The node stays in the graph, and is not run when nobody reads it.
+  std::vector<std::string> bypass = {};
 };
 
 /// Reads and checks a graph file. Throws one Error(usage) that tells every mistake found, with place and suggestion.

@@ -68,6 +68,10 @@ struct Leaf {
   bool params_are_broken = false;
   std::vector<std::vector<Arrival>> inputs;  ///< for each input port of the pass
 
+  const quell_pass_desc* swapped_from = nullptr;  ///< the pass that the file names, where --swap chose another
+  std::uint32_t swapped_version = 0;              ///< of it, as the file names it
+  std::vector<std::string> left_out;              ///< its parameters that the file sets and the other pass does not take
+
   const quell_port_desc& input(std::size_t i) const { return *QUELL_AT(quell_port_desc, pass->inputs, i); }
   const quell_port_desc& output(std::size_t i) const { return *QUELL_AT(quell_port_desc, pass->outputs, i); }
   const quell_param_desc& param(std::size_t i) const { return *QUELL_AT(quell_param_desc, pass->params, i); }
@@ -77,7 +81,8 @@ struct Leaf {
 struct Unfolded {
   std::map<std::filesystem::path, std::optional<Document>> documents;
   Scope root;
-  std::vector<Leaf> leaves;  ///< in the order of the files
+  std::vector<Leaf> leaves;                       ///< in the order of the files
+  std::vector<std::unique_ptr<Document>> edited;  ///< copies of documents, for scopes that --swap and --bypass change
 };
 
 /// Reads the graph and every graph that it includes, and looks up the passes. Nothing when the graph itself is

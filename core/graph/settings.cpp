@@ -21,6 +21,19 @@ std::string name_of(const Scope& scope) {
 
 std::uint32_t version_of(const Leaf& leaf) { return leaf.written->version.value_or(leaf.pass->version); }
 
+// Whether a name stands in one of the files around a leaf, and not in an option.
+bool stands_in_a_file(const Leaf& leaf, const Text& target) {
+  for (const Scope* scope = leaf.scope; scope; scope = scope->parent)
+    if (scope->document->source == target.where.source) return true;
+  return false;
+}
+
+bool is_same_kind(const quell_param_desc& a, const quell_param_desc& b) { return a.type == b.type && a.is_array == b.is_array; }
+
+void leave_out(Leaf& leaf, const std::string& param) {
+  if (std::ranges::find(leaf.left_out, param) == leaf.left_out.end()) leaf.left_out.push_back(param);
+}
+
 }  // namespace
 
 void Settings::apply_files() {
@@ -120,7 +133,24 @@ std::vector<Settings::Slot> Settings::find_in(const Scope& scope, const WrittenN
   return leaf.pass ? find_in_leaf(leaf, target, rest) : std::vector<Slot>();
 }
 
+// What a file says of a pass that --swap replaced holds for the other pass, too, where that has such a parameter.
+std::vector<Settings::Slot> Settings::find_in_swapped(Leaf& leaf, std::uint32_t former) {
+  const quell_param_desc& before = *QUELL_AT(quell_param_desc, leaf.swapped_from->params, former);
+  const std::optional<std::uint32_t> now = find_param(*leaf.pass, leaf.pass->version, before.name);
+  if (now && is_same_kind(before, leaf.param(*now))) return {{&leaf, *now}};
+  leave_out(leaf, before.name);
+  return {};
+}
+
 std::vector<Settings::Slot> Settings::find_in_leaf(Leaf& leaf, const Text& target, std::string_view name) {
+  if (leaf.swapped_from && stands_in_a_file(leaf, target)) {
+    if (const auto former = find_param(*leaf.swapped_from, leaf.swapped_version, name)) return find_in_swapped(leaf, *former);
+    errors_.error(target.where,
+                  "the pass '" + std::string(leaf.swapped_from->id) + "' has no parameter '" + std::string(name) + "'" +
+                      suggest_param(*leaf.swapped_from, name),
+                  notes_);
+    return {};
+  }
   if (const std::optional<std::uint32_t> param = find_param(*leaf.pass, version_of(leaf), name)) return {{&leaf, *param}};
   errors_.error(target.where,
                 "the pass '" + std::string(leaf.pass->id) + "' has no parameter '" + std::string(name) + "'" +
@@ -128,6 +158,18 @@ std::vector<Settings::Slot> Settings::find_in_leaf(Leaf& leaf, const Text& targe
                 notes_);
   leaf.params_are_broken = true;
   return {};
+}
+
+// Whether a value that a file has for the pass that --swap replaced is possible for the other one. A mistake in it is told.
+bool Settings::fits_swapped(Leaf& leaf, const quell_param_desc& desc, const Setting& setting) {
+  const std::optional<std::uint32_t> former = find_param(*leaf.swapped_from, leaf.swapped_from->version, desc.name);
+  const ValueContext context{leaf.name + "." + desc.name, setting.folder, notes_};
+  if (!former || !to_param(*QUELL_AT(quell_param_desc, leaf.swapped_from->params, *former), setting.value, context, errors_))
+    return false;
+  Diagnostics unfit;
+  if (to_param(desc, setting.value, context, unfit)) return true;
+  leave_out(leaf, desc.name);
+  return false;
 }
 
 void Settings::assign(const std::vector<Slot>& slots, const Setting& setting, const Scope* by) {
@@ -142,6 +184,7 @@ void Settings::assign(const std::vector<Slot>& slots, const Setting& setting, co
           notes_);
       continue;
     }
+    if (by && leaf->swapped_from && !fits_swapped(*leaf, desc, setting)) continue;
     const bool is_text = desc.type == QUELL_PARAM_STRING || desc.type == QUELL_PARAM_PATH || desc.type == QUELL_PARAM_ENUM;
     const Json& value = setting.plain && is_text && !desc.is_array ? *setting.plain : setting.value;
     param.value = to_param(desc, value, {label, setting.folder, notes_}, errors_);

@@ -40,6 +40,8 @@ class Settings {
   std::vector<Slot> find_own(const Scope& scope, const Text& target, std::string_view name);
   std::vector<Slot> find_in(const Scope& scope, const WrittenNode& node, const Text& target, std::string_view rest);
   std::vector<Slot> find_in_leaf(Leaf& leaf, const Text& target, std::string_view name);
+  static std::vector<Slot> find_in_swapped(Leaf& leaf, std::uint32_t former);
+  bool fits_swapped(Leaf& leaf, const quell_param_desc& desc, const Setting& setting);
   void assign(const std::vector<Slot>& slots, const Setting& setting, const Scope* by);
 
   Unfolded& graph_;

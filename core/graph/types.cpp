@@ -83,6 +83,15 @@ class Checker {
 
 }  // namespace
 
+std::optional<PortType> type_of(const Unfolded& graph, const Arrival& arrival) {
+  if (arrival.type || arrival.state != Arrival::State::connected) return arrival.type;
+  return type_of(graph, arrival.edge.from);
+}
+
+std::optional<PortType> type_of(const Unfolded& graph, const Endpoint& endpoint) {
+  return follow_type(LeafView(graph), endpoint);
+}
+
 void check_types(const Unfolded& graph, const Connections& connections, Diagnostics& errors) {
   Checker checker(graph, errors);
   // What goes wrong where an edge enters a subgraph need not be told again inside of it, so these come first.

@@ -108,6 +108,24 @@ const PassInfo kSelect{.id = "select",
                        .inputs = {{"camera", kCamera}, {"id", kId}, {"value", kValue}},
                        .outputs = {{"mask", kMask}, {.name = "id", .same_as = "id"}}};
 
+// Like filter in some ways: a parameter of less range, one of another type.
+struct SmoothParams {
+  int radius = 2, sigma = 1;
+  bool clamp = false;
+  void describe(auto&& field) {
+    field("radius", radius, Range<int>{0, 10}, "px", "Taps reach this far.");
+    field("sigma", sigma, Range<int>{0, 100}, "", "Tolerated difference.");
+    field("clamp", clamp, "Stay within the window.");
+  }
+};
+class Smooth : public Idle {
+ public:
+  explicit Smooth(const SmoothParams&) {}
+};
+const PassInfo kSmooth{.id = "smooth",
+                       .inputs = {{"color", kColor}, {.name = "guide", .types = kNormal, .optional = true}},
+                       .outputs = {{.name = "image", .same_as = "color"}}};
+
 Registry make_registry() {
   const std::vector<const quell_pass_desc*> all{detail::Descriptor::make<Filter, FilterParams>(kFilter).get(),
                                                 detail::Descriptor::make<Blend, BlendParams>(kBlend).get(),
@@ -117,7 +135,8 @@ Registry make_registry() {
                                                 plain<3>(kCopy),
                                                 plain<4>(kMeter),
                                                 plain<5>(kSelect),
-                                                plain<6>(kSplit)};
+                                                plain<6>(kSplit),
+                                                detail::Descriptor::make<Smooth, SmoothParams>(kSmooth).get()};
   Registry registry;
   registry.add(all.data(), static_cast<std::uint32_t>(all.size()));
   return registry;

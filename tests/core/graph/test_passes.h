@@ -5,7 +5,8 @@
 
 namespace quell::test {
 
-/// A registry with the passes filter, blend, reproject, back_project, merge, copy, meter and select.
+/// A registry with the passes filter, blend, reproject, back_project, merge, copy, meter, select,
+/// split and smooth.
 const Registry& passes();
 
 }  // namespace quell::test
