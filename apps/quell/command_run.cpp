@@ -77,9 +77,9 @@ struct Preparation {
 
 /// Runs that follow each other.
 struct Watch {
-  explicit Watch(const GraphArguments& graph) : passes(load_passes(graph.plugins)) {
-    files.add({find_graph(graph.graph)});
-    files.add(graph.options.params);
+  explicit Watch(const Arguments& arguments) : passes(load_passes(arguments.graph.plugins)), rerun(arguments.output.is_layered) {
+    files.add({find_graph(arguments.graph.graph)});
+    files.add(arguments.graph.options.params);
   }
   Registry passes;
   WatchedFiles files;
@@ -173,7 +173,7 @@ ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, W
 ExitCode run_watching(const Arguments& arguments, RunLog& log, Console& console) {
   if (arguments.dry_run) throw Error(Fault::usage, "--watch", "there is nothing to watch with --dry-run; leave one of them out");
   if (arguments.trace) throw Error(Fault::usage, "--watch", "--trace is for a single run; leave one of them out");
-  Watch watch(arguments.graph);
+  Watch watch(arguments);
   ExitCode code = run_logged(arguments, log, console, &watch);
   bool is_right = true;
   while (code != kInterrupted) {

@@ -20,6 +20,7 @@ struct Command {
 Command add_run(CLI::App& program);
 Command add_check(CLI::App& program);
 Command add_graph(CLI::App& program);
+Command add_inspect(CLI::App& program);
 Command add_passes(CLI::App& program);
 Command add_schema(CLI::App& program);
 Command add_new(CLI::App& program);

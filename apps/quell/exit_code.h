@@ -8,6 +8,7 @@ namespace quell::app {
 enum ExitCode : int {
   kOk = 0,
   kFramesFailed = 1,
+  kFoundWrong = 1,    // inspect: what was tested is wrong
   kUsage = 2,         // command line, graph or parameter
   kInput = 3,         // a sequence, image or camera that is missing or unreadable
   kPlugin = 4,        // a plugin that was asked for does not load, or a pass breaks the interface

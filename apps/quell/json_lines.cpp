@@ -50,6 +50,12 @@ JsonObject& JsonObject::seconds(std::string_view key, double value) {
   return raw(key, std::isfinite(value) ? text.data() : "null");
 }
 
+JsonObject& JsonObject::value(std::string_view key, double value) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.9g", value);
+  return raw(key, std::isfinite(value) ? text.data() : "null");
+}
+
 JsonObject& JsonObject::object(std::string_view key, const JsonObject& value) { return raw(key, value.str()); }
 
 JsonObject& JsonObject::objects(std::string_view key, const std::vector<JsonObject>& values) {

@@ -21,6 +21,8 @@ class JsonObject {
   JsonObject& number(std::string_view key, std::integral auto value) { return raw(key, std::to_string(value)); }
   /// To the microsecond. What is not finite becomes null.
   JsonObject& seconds(std::string_view key, double value);
+  /// To nine digits that matter. What is not finite becomes null.
+  JsonObject& value(std::string_view key, double value);
   JsonObject& object(std::string_view key, const JsonObject& value);
   JsonObject& objects(std::string_view key, const std::vector<JsonObject>& values);
 

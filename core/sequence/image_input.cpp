@@ -130,4 +130,32 @@ Image read_image(const std::filesystem::path& path, const ImageRequest& request,
   }
 }
 
+StoredImage read_stored(const std::filesystem::path& path, const ImageRequest& request, BufferPool& pool) {
+  ImageFile file(path);
+  const Source source = select_source(file, request);
+  const Rectangle &display = file.display_window(), &window = source.window;
+  StoredImage stored{Image(request.type == QUELL_TYPE_ID ? QUELL_TYPE_SCALAR : request.type, source.size(), pool),
+                     std::string(file.format()),
+                     {},
+                     source.selection,
+                     file.channels()[static_cast<std::size_t>(source.selection.channels[0])].numbers,
+                     source.conventions,
+                     {display.width, display.height},
+                     window.x - display.x,
+                     window.y - display.y};
+  for (const int channel : source.selection.channels)
+    stored.channels.push_back(file.channels()[static_cast<std::size_t>(channel)].name);
+  const FloatOutput out = stored.image.writable_floats();
+  if (request.type != QUELL_TYPE_ID || !is_integer(stored.numbers)) {
+    file.read(source.selection.channels, window, out);
+    return stored;
+  }
+  Image integers(QUELL_TYPE_ID, source.size(), pool);  // as floats, 8 and 16 bit would be 0 to 1
+  file.read(source.selection.channels[0], window, integers.writable_ids());
+  for (int y = 0; y < out.height; ++y)
+    std::transform(integers.ids().row(y), integers.ids().row(y) + out.width, out.row(y),
+                   [](std::uint32_t id) { return static_cast<float>(id); });
+  return stored;
+}
+
 }  // namespace quell

@@ -42,4 +42,18 @@ Size probe_image(const std::filesystem::path& path, const ImageRequest& request)
 Image read_image(const std::filesystem::path& path, const ImageRequest& request, BufferPool& pool,
                  const std::function<void(const std::string&)>& note);
 
+/// An image as its file holds it, and what read_image() makes of it.
+struct StoredImage {
+  Image image;  ///< of the type asked for, ids as a scalar; 0 outside the data window, and nothing converted
+  std::string format;
+  std::vector<std::string> channels;  ///< full names, one for each plane
+  Selection selection;
+  Numbers numbers = Numbers::single;  ///< of the first channel
+  Conventions conventions;            ///< by which read_image() converts it
+  Size whole;                         ///< of the display window
+  int x = 0, y = 0;                   ///< where in it the image's pixel (0, 0) lies
+};
+/// Throws Error(input).
+StoredImage read_stored(const std::filesystem::path& path, const ImageRequest& request, BufferPool& pool);
+
 }  // namespace quell

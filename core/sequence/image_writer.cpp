@@ -37,7 +37,8 @@ Placement place(const FileContent& content) {
   for (const WrittenLayer& layer : content.layers)
     if (layer.image.width() != size.width || layer.image.height() != size.height)
       throw Error(Fault::frame, "layers",
-                  "the images of frame " + std::to_string(content.frame) + " differ in size, so that one file cannot hold them");
+                  "the images of frame " + std::to_string(content.frame.value_or(0)) +
+                      " differ in size, so that one file cannot hold them");
   if (!content.original) return place_alone(size);
   const Placement placement = content.original->place(size);
   const Size picture = content.original->picture_size();
@@ -52,10 +53,11 @@ Placement place(const FileContent& content) {
 void add_attributes(OIIO::ImageSpec& spec, const FileContent& content, const FileSinkOptions& options) {
   if (content.original) content.original->add_attributes(spec, content.keep_channels);
   for (const FileAttribute& attribute : options.attributes) spec.attribute(attribute.name, attribute.text);
-  if (content.frame >= std::numeric_limits<int>::min() && content.frame <= std::numeric_limits<int>::max())
-    spec.attribute("quell:frame", static_cast<int>(content.frame));
+  if (!content.frame) return;
+  if (*content.frame >= std::numeric_limits<int>::min() && *content.frame <= std::numeric_limits<int>::max())
+    spec.attribute("quell:frame", static_cast<int>(*content.frame));
   else
-    spec.attribute("quell:frame", std::to_string(content.frame));
+    spec.attribute("quell:frame", std::to_string(*content.frame));
 }
 
 }  // namespace quell

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,10 +26,10 @@ struct WrittenLayer {
 
 /// What a file holds.
 struct FileContent {
-  std::vector<WrittenLayer> layers;  ///< images of one size
-  std::int64_t frame = 0;
-  OriginalFile* original = nullptr;  ///< for attributes and windows
-  bool keep_channels = false;        ///< of `original`
+  std::vector<WrittenLayer> layers;   ///< images of one size
+  std::optional<std::int64_t> frame;  ///< nothing for a picture that is of no frame
+  OriginalFile* original = nullptr;   ///< for attributes and windows
+  bool keep_channels = false;         ///< of `original`
 };
 
 /// Where the layers lie. Throws Error(frame) when channels are to be kept that have another size.

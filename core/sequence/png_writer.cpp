@@ -53,7 +53,7 @@ void add_texts(OIIO::ImageSpec& spec, const FileContent& content, const FileSink
   add_attributes(all, content, options);
   for (const OIIO::ParamValue& value : all.extra_attribs)
     if (value.name().size() <= kLongestKeyword) spec.extra_attribs.add_or_replace(value);
-  spec.attribute("quell:frame", std::to_string(content.frame));
+  if (content.frame) spec.attribute("quell:frame", std::to_string(*content.frame));
 }
 
 }  // namespace

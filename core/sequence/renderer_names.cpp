@@ -28,6 +28,8 @@ constexpr std::string_view kBlenderNoisy = "Blender's denoising passes: the imag
 constexpr std::string_view kArnoldGuide = "Arnold's developer guide, AOVs; not tried with a file";
 constexpr std::string_view kPbrtSource = "pbrt-v4, film.cpp: camera space unless \"coordinatesystem\" is \"world\"";
 constexpr std::string_view kMitsubaSource = "Mitsuba 3, integrators/aov.cpp";
+constexpr std::string_view kRenderManManual =
+    "RenderMan's manual, Denoising and Arbitrary Output Variables; not tried with a file";
 constexpr std::string_view kVrayList = "V-Ray's list of render elements; not tried with a file";
 constexpr std::string_view kFalcorSource = "Falcor, GBuffer.cpp and GBufferRaster.cpp";
 constexpr std::string_view kCustom = "the usual names";
@@ -72,6 +74,13 @@ constexpr RendererName kNames[] = {
     {"Arnold", "depth", kDepth, "Z", "*", 0, kNone, "", kArnoldGuide},
     {"Arnold", "id", kId, "", "ID", 0, kNone, "", kArnoldGuide},
     {"Arnold", "id", kId, "ID", "*", 0, kNone, "", kArnoldGuide},
+
+    // Not read: P and Nn (the manual does not tell their space), dPdtime (leaves the camera's motion out).
+    {"RenderMan", "color", kColor, "Ci", "R,G,B", 0, kNone, "", kRenderManManual},
+    {"RenderMan", "alpha", kAlpha, "Ci", "A", 0, kNone, "", kRenderManManual},
+    {"RenderMan", "normal", kNormal, "__Nworld", "R,G,B|X,Y,Z", 0, kNone, "", kRenderManManual},
+    {"RenderMan", "position", kPosition, "__Pworld", "R,G,B|X,Y,Z", 0, kNone, "", kRenderManManual},
+    {"RenderMan", "depth", kDepth, "", "VLEN", 1, kRay, "", kRenderManManual},
 
     // Not read: normals and velocity, since their space, sign and unit depend on settings.
     {"V-Ray", "albedo", kAlbedo, "rawDiffuseFilter", "R,G,B", 3, kNone, "", kVrayList},

@@ -178,6 +178,11 @@ std::vector<std::string> Sequence::channels_read(std::string_view name, std::int
   return names;
 }
 
+StoredImage Sequence::read_stored(std::string_view name, std::int64_t frame, BufferPool& pool) const {
+  const SequenceInput& input = state_->require(name);
+  return quell::read_stored(input.spec.pattern.path(frame), state_->request(input), pool);
+}
+
 std::optional<Shape> Sequence::shape(std::string_view input) {
   if (!state_->find(input)) return std::nullopt;
   return state_->shape(input);

@@ -12,6 +12,7 @@
 #include "quell/image/stream.h"
 #include "quell/sequence/frame_range.h"
 #include "quell/sequence/image_file.h"
+#include "quell/sequence/image_input.h"
 
 namespace quell {
 
@@ -97,6 +98,10 @@ class Sequence final : public FrameSource {
   /// Full names (see FileChannel) of the channels that an image input is read from in a frame, one for each plane. Opens the
   /// file. Throws Error(input).
   std::vector<std::string> channels_read(std::string_view input, std::int64_t frame) const;
+
+  /// An image input as its file holds it, before any conversion: for tests of whether it is read as it was meant. Throws
+  /// Error(input).
+  StoredImage read_stored(std::string_view input, std::int64_t frame, BufferPool& pool) const;
 
   std::optional<Shape> shape(std::string_view input) override;
   /// Pixels that are not finite are passed on as they are, except depths (see convert.h).

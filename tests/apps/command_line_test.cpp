@@ -61,9 +61,10 @@ INSTANTIATE_TEST_SUITE_P(
     All, WrongCommandLine,
     ::testing::Values(
         WrongLine{{"rum"},
-                  "error: there is no command 'rum'; did you mean 'run'?; the commands are 'run', 'check', 'graph', 'inspect', 'passes', "
-                   "'schema' and 'new'\n"
-                   "`quell --help` tells more"},
+                  "error: there is no command 'rum'; did you mean 'run'?; the commands are 'run', 'check', 'inspect', 'graph', "
+                  "'passes', 'schema' and 'new'
+                  "
+                  "`quell --help` tells more"},
         WrongLine{{"--vesion"}, "error: there is no option '--vesion'; did you mean '--version'?\n`quell --help` tells more"},
         WrongLine{{"new", "pas"},
                   "error: there is no command 'pas'; did you mean 'pass'?; the commands are 'pass' and 'graph'\n"

@@ -97,6 +97,25 @@ TEST_F(Watch, ComputesTheLastNodeAloneWhenItsParameterChangesAndALoopWithoutWhat
   EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
+// A file of layers holds all results of a frame, those too that a change cannot affect.
+TEST_F(Watch, WritesWholeFilesOfLayers) {
+  make_shot(2);
+  write_file("graph.json", chain("2", "3", kBoth));
+  Program program(watch(text("graph.json"), text("shot"), {"--layers", "all"}));
+  ASSERT_TRUE(wait_for_runs(1));
+  write_file("graph.json", chain("2", "4", kBoth));
+  ASSERT_TRUE(wait_for_runs(2));
+  const Outcome outcome = end(program);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("\nsecond: 2 of 2 frames; first: kept\n"));
+  EXPECT_EQ(
+      run({"run", text("graph.json"), text("shot"), "-o", text("whole"), "--layers", "all", "-q", "--plugin-path", TEST_PLUGINS})
+          .code,
+      0);
+  EXPECT_THAT(list("out"), ElementsAre("all.0001.exr", "all.0002.exr"));
+  EXPECT_EQ(contents("out"), contents("whole"));
+}
+
 TEST_F(Watch, WritesOnlyWhatHasChangedAndLeavesWhatIsNoLongerAnOutput) {
   make_shot(2);
   write_file("graph.json", chain("2", "3", kBoth));

@@ -94,6 +94,7 @@ struct Tally {
 class Case {
  public:
   explicit Case(unsigned seed) : dice_(seed + 5000), scene_(random_scene(dice_)), graph_(random_graph(seed, scene_.frames)) {
+    if (dice_.chance(50)) leave_out_mishaps();
     is_plain_ = scene_.unreadable.empty() && scene_.odd.empty() && scene_.unwritable.empty();
     limits_memory_ = dice_.chance(30);
     keeps_busy_ = dice_.chance(50);
@@ -111,6 +112,11 @@ class Case {
   }
 
  private:
+  void leave_out_mishaps() {
+    scene_.unreadable.clear(), scene_.unwritable.clear(), scene_.odd.clear();
+    for (TestNode& node : graph_.nodes) node.fails.clear();
+  }
+
   SessionOptions options(const std::shared_ptr<const Graph>& graph) {
     SessionOptions options = concurrent(setting_);
     for (const Place& dump : graph_.dumps) options.dumps.push_back(graph_.name(dump));

@@ -193,12 +193,13 @@ TEST(RoomMultilayer, EveryInputIsRecognizedWithoutBeingTold) {
   EXPECT_EQ(names, "albedo alpha camera color depth emission id motion normal position ");
   EXPECT_THAT(sequence->describe(),
               testing::HasSubstr("ViewLayer.Vector: X,Y (Blender)  sign=previous-current, unit=pixels, y=up"));
-  // Four samples of a pixel are averaged; their mean lies within the pixel, where the surface is one.
-  const Landing landing = land(*sequence, 2, 0.6);
+  // Positions are float here, not snapped; the farthest was measured 0.034 px from its pixel's center.
+  const Landing landing = land(*sequence, 2, 0.05);
   EXPECT_EQ(landing.pixels, 320 * 180);
-  EXPECT_NEAR(landing.mean_x, 0.5, 0.05);
-  EXPECT_NEAR(landing.mean_y, 0.5, 0.05);
-  EXPECT_LT(landing.strays, 0.02);
+  EXPECT_NEAR(landing.mean_x, 0.5, 1e-3);
+  EXPECT_NEAR(landing.mean_y, 0.5, 1e-3);
+  EXPECT_EQ(landing.strays, 0);
+  EXPECT_LT(landing.depth_error, 1e-5);
 }
 
 // The table's sign, unit and direction of Blender's vectors against the matrices of both frames.
@@ -223,9 +224,9 @@ TEST(RoomMultilayer, MotionAgreesWithTheMatrices) {
       errors.push_back(
           std::hypot(from[0] / from[3] - to[0] / to[3] - v.at(x, y, 0), from[1] / from[3] - to[1] / to[3] - v.at(x, y, 1)));
     }
-  ASSERT_GT(errors.size(), 40000U);
+  ASSERT_EQ(errors.size(), 320U * 180U);
   std::sort(errors.begin(), errors.end());
-  EXPECT_LT(errors[errors.size() * 9 / 10], 0.05) << "px; edges, where samples of several surfaces are averaged, may differ";
+  EXPECT_LT(errors[errors.size() * 95 / 100], 0.05) << "px; at edges, vectors are those of several surfaces, averaged";
 }
 
 }  // namespace

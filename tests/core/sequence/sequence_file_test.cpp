@@ -74,7 +74,7 @@ TEST_F(SequenceFileText, EveryMistakeIsToldAtItsPlace) {
       "s.json:5:42: error: the key \"file\" is missing; write \"file\": \"id.####.exr\"\n"
       "      \"inputs\": {\"color\": \"color.exr\", \"id\": {\"fil\": 3}}\n"
       "                                             ^\n"
-      "s.json:5:43: error: unknown key \"fil\"; did you mean 'file'?; known here: 'file', 'type', 'channels', 'format', "
+      "s.json:5:43: error: unknown key \"fil\"; did you mean 'file'?; known here: 'file', 'type', 'layer', 'channels', 'format', "
       "'doc', 'sign', 'unit', 'y', 'jitter', 'depth', 'space', 'encoding', 'background', 'alpha', 'transfer', 'vectors', "
       "'ndc' and 'w'\n"
       "      \"inputs\": {\"color\": \"color.exr\", \"id\": {\"fil\": 3}}\n"

@@ -160,8 +160,11 @@ TEST_F(SequenceOf, ASequenceFileInTheFolderIsUsed) {
 TEST_F(SequenceOf, WhatIsNoSequenceIsRefused) {
   make_color("a_1.exr");
   EXPECT_THAT(message_of(Fault::input, [&] { Sequence::open(folder_ / "none"); }), HasSubstr("none: no such folder or file"));
-  EXPECT_THAT(message_of(Fault::input, [&] { Sequence::open(folder_ / "a_1.exr"); }),
-              HasSubstr("a sequence is a folder or a .json file; single patterns are given with --in"));
+  test::make_text(folder_ / "a_1.txt", "no image");
+  EXPECT_THAT(message_of(Fault::input, [&] { Sequence::open(folder_ / "a_1.txt"); }),
+              HasSubstr("a_1.txt: not an image of a known format"));
+  EXPECT_THAT(message_of(Fault::input, [&] { Sequence::open(folder_ / "b_#.exr"); }),
+              HasSubstr("b_#.exr: there is no file of this name"));
   EXPECT_THAT(message_of(Fault::input, [&] { open({"color=" + path("none/a_%d.exr")}); }),
               HasSubstr("none: the folder cannot be read"));
 }
