@@ -23,7 +23,7 @@ set(public_headers
   runtime/analysis.h runtime/executor.h runtime/function_ref.h runtime/host.h runtime/rerun.h runtime/sanitize.h runtime/session.h
   runtime/thread_budget.h runtime/trace.h runtime/window.h
   sequence/sequence.h sequence/frame_range.h sequence/file_sink.h sequence/image_file.h sequence/image_input.h
-  sequence/conventions.h
+  sequence/conventions.h sequence/layers.h
   testing/pass_test.h testing/conformance.h testing/conformance_checks.h testing/synthetic.h)
 foreach(header IN LISTS public_headers)
   cmake_path(GET header PARENT_PATH box)
