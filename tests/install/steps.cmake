@@ -1,6 +1,11 @@
 # What the scripts of this folder share. SCRATCH is the folder of them all, and holds the installed quell.
 cmake_minimum_required(VERSION 3.25)
 set(prefix ${SCRATCH}/moved)
+# With ccache, only the first of many runs takes long.
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(ENV{CMAKE_CXX_COMPILER_LAUNCHER} ${CCACHE})
+endif()
 
 # run(COMMAND...): fails with all that the command printed when it fails; else its standard output is in `output`.
 function(run)
