@@ -60,10 +60,10 @@ void add_options(CLI::App& app, SequenceArguments& arguments) {
                  "layers (multi.####.exr; one file is one frame). May be left out when --in names every input.");
   add_repeatable(
       app, "--in", arguments.in, "INPUT=PATTERN",
-      "The files of one input of the graph, such as color=shot/beauty_%d.exr or depth=z.####.exr; repeatable. Settings "
-      "may follow: normal=multi.####.exr:ViewLayer.Normal takes a layer, id=ID_%d.exr:background=-1 states a convention (also "
-      ":sign=, :unit=, :y=, :jitter=, :depth=, :space=, :encoding=, :alpha=, :transfer=; see core/sequence/README.md), also "
-      ":type=, :channels=R,G,B and :format=.")
+      "The files of one input, such as color=shot/beauty_%d.exr or depth=z.####.exr; repeatable. After colons a layer or "
+      "settings may follow: normal=multi.####.exr:ViewLayer.Normal, id=ID_%d.exr:background=-1. Settings are the conventions "
+      "sign, unit, y, jitter, depth, space, encoding, background, alpha and transfer; vectors, ndc, y and w of a camera in a "
+      "header; and type, channels and format. The message about a wrong value tells the right ones.")
       ->group(kInputGroup);
   app.add_option("--frames", arguments.frames,
                  "Frames to compute: 1-100, 1-100x2 (every second), 1,5,9-12. Without it, those of the sequence.json, or all for "
@@ -81,26 +81,32 @@ void add_options(CLI::App& app, SequenceArguments& arguments) {
       ->group(kInputGroup);
 }
 
+namespace {
+
+Rectangle parse_crop(const std::string& text) {
+  int numbers[4];
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int i = 0; i < 4; ++i) {
+    const auto [next, error] = std::from_chars(at, end, numbers[i]);
+    const bool ends_well = i == 3 ? next == end : next != end && *next == ',';
+    if (error != std::errc() || !ends_well || numbers[i] < (i < 2 ? 0 : 1))
+      throw Error(Fault::usage, "--crop",
+                  "'" + text + "' is not X,Y,WIDTH,HEIGHT in pixels from the upper left corner, such as 100,50,320,180");
+    at = next + 1;
+  }
+  return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+}  // namespace
+
 SequenceOptions sequence_options(const SequenceArguments& arguments) {
   SequenceOptions options;
   options.in = arguments.in;
   if (arguments.frames) options.frames = FrameRange::parse(*arguments.frames);
   if (arguments.window && parse_choice(*arguments.window, "--window", {"display", "data"}) == 1)
     options.window = WindowChoice::data;
-  if (!arguments.crop) return options;
-  int numbers[4];
-  const char* at = arguments.crop->data();
-  const char* const end = at + arguments.crop->size();
-  for (int i = 0; i < 4; ++i) {
-    const auto [next, error] = std::from_chars(at, end, numbers[i]);
-    const bool ends_well = i == 3 ? next == end : next != end && *next == ',';
-    if (error != std::errc() || !ends_well || numbers[i] < (i < 2 ? 0 : 1))
-      throw Error(
-          Fault::usage, "--crop",
-          "'" + *arguments.crop + "' is not X,Y,WIDTH,HEIGHT in pixels from the upper left corner, such as 100,50,320,180");
-    at = next + 1;
-  }
-  options.crop = Rectangle{numbers[0], numbers[1], numbers[2], numbers[3]};
+  if (arguments.crop) options.crop = parse_crop(*arguments.crop);
   return options;
 }
 

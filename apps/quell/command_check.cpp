@@ -55,8 +55,7 @@ Command add_check(CLI::App& program) {
       "Example:\n"
       "  quell check my_graph.json shot/\n"
       "finds every mistake in the graph at once, with its line and column, then whether shot/ has the inputs that the graph "
-      "needs, "
-      "in sizes that go together.");
+      "needs, in sizes that go together.");
   auto arguments = std::make_shared<Arguments>();
   add_options(app, arguments->graph);
   add_options(app, arguments->sequence);

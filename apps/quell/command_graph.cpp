@@ -144,11 +144,11 @@ Command add_graph(CLI::App& program) {
              "node and of the loops, and what bounds the frames per second. Results are written to a folder below TMPDIR, "
              "or /tmp, that is removed afterwards.")
           ->disable_flag_override()
-          ->group(kOtherGroup);
+          ->group(kScheduleGroup);
   add_text(app, "--threads", arguments->threads, "N",
            "Threads for --analyze; 0, the default, for as many as there are processors.")
       ->needs(analyze)
-      ->group(kOtherGroup);
+      ->group(kScheduleGroup);
   add_drawing_options(app, *arguments);
   add_options(app, arguments->verbosity);
   return {&app, [arguments](Console& console) { return run(*arguments, console); }};

@@ -125,6 +125,7 @@ Command add_inspect(CLI::App& program) {
       "Exit status: 0 nothing is wrong, 1 something is, 2 usage, 3 nothing there or unreadable, 70 internal error.");
   auto arguments = std::make_shared<Arguments>();
   add_options(app, arguments->sequence);
+  app.get_option("--frames")->description("Frames to test: 1-3, 1,5,9-12. Without it, the first three and the middle one.");
   app.add_option("--picture", arguments->picture,
                  "Draw the inputs of a tested frame, and where the tests find errors, into a PNG file.")
       ->type_name("FILE.png")

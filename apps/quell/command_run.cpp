@@ -239,7 +239,7 @@ Command add_run(CLI::App& program) {
                "After the run wait until the graph file, one that it includes or a --params file is saved, and compute anew what "
                "that can affect; Ctrl-C ends.")
       ->disable_flag_override()
-      ->group(kOtherGroup);
+      ->group(kScheduleGroup);
   app.add_flag("-n,--dry-run", arguments->dry_run, "Say what would be read, run and written, and stop there.")
       ->disable_flag_override()
       ->group(kOtherGroup);

@@ -32,10 +32,8 @@ Command add_schema(CLI::App& program) {
       "Example:\n"
       "  quell schema --plugin-path my_passes/ -o quell-graph.schema.json\n"
       "writes it beside your graphs. A graph that says \"$schema\": \"quell-graph.schema.json\" is completed, checked and "
-      "explained in "
-      "VS Code and other editors: passes with their inputs and parameters, ranges, defaults and documentation, as the passes "
-      "that were "
-      "found have them. `quell check` finds more, since it knows what the whole graph is.\n"
+      "explained in VS Code and other editors: passes with their inputs and parameters, ranges, defaults and documentation, as "
+      "the passes that were found have them. `quell check` finds more, since it knows what the whole graph is.\n"
       "\n"
       "Exit status: 0 all is well, 2 usage, 4 plugin, 70 internal error.");
   auto arguments = std::make_shared<Arguments>();
