@@ -74,6 +74,8 @@ Skeleton make_in_tree(NewPass pass, const fs::path& root) {
   step.commands.push_back("cmake --build --preset release --target " + pass.plugin + " " + pass.name + "_test");
   step.commands.push_back("build/release/bin/" + pass.name + "_test");
   skeleton.next.push_back(step);
+  skeleton.next.push_back({"let editors know it (a test compares the schema that ships with the passes)",
+                           {"quell schema --plugin-path build/release/" QUELL_PASSES_DIR " -o graphs/quell-graph.schema.json"}});
   return skeleton;
 }
 

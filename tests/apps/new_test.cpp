@@ -145,7 +145,10 @@ TEST_F(New, PassOfTheSourceTreeJoinsAPlugin) {
             "build it, and test it\n"
             "  cmake --preset release -DQUELL_BUILD_TESTS=ON\n"
             "  cmake --build --preset release --target spatial soften_test\n"
-            "  build/release/bin/soften_test\n");
+            "  build/release/bin/soften_test\n"
+            "\n"
+            "let editors know it (a test compares the schema that ships with the passes)\n"
+            "  quell schema --plugin-path build/release/lib/quell/passes -o graphs/quell-graph.schema.json\n");
   EXPECT_EQ(read("passes/CMakeLists.txt"),
             "# quell_add_plugin(spatial)\n"
             "quell_add_plugin(spatial)\n"
