@@ -8,8 +8,6 @@
 #include <fstream>
 #include <set>
 
-#include "quell/sequence/file_pattern.h"
-
 namespace quell::app {
 namespace fs = std::filesystem;
 
@@ -38,12 +36,10 @@ ResultFiles list_series(const Job& job, const FileSink& sink, const FileSinkOpti
   return series;
 }
 
-/// The files of an input in the job's frames.
-std::set<fs::path> files_of(const InputFiles& input, const std::vector<std::int64_t>& frames) {
-  const fs::path pattern = input.pattern;
-  const FilePattern names = FilePattern::parse(pattern.filename().string(), pattern.parent_path(), "SEQUENCE");
+/// The names of an input's files in the job's frames.
+std::set<fs::path> files_of(const Job& job, const InputFiles& input) {
   std::set<fs::path> files;
-  for (const std::int64_t frame : frames) files.insert(names.file_name(frame));
+  for (const std::int64_t frame : job.frames) files.insert(job.sequence->file(input.input, frame).filename());
   return files;
 }
 
@@ -67,7 +63,7 @@ std::vector<ResultFiles> list_results(const Job& job, const FileSink& sink, cons
 void refuse_to_replace_inputs(const Job& job, const std::vector<ResultFiles>& results) {
   for (const InputFiles& input : job.sequence->inputs()) {  // also what the graph does not read: rendering it took long
     const fs::path folder = fs::path(input.pattern).parent_path();
-    const std::set<fs::path> names = files_of(input, job.frames);
+    const std::set<fs::path> names = files_of(job, input);
     for (const ResultFiles& series : results) {
       std::error_code error;
       if (!fs::equivalent(folder.empty() ? "." : folder, series.files.front().parent_path(), error)) continue;
