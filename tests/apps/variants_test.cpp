@@ -1,7 +1,10 @@
 // --swap and --bypass: the same as another file would do, for run, check and graph.
 #include <gmock/gmock.h>
 
+#include <map>
+
 #include "tests/apps/sample.h"
+#include "tests/core/sequence/test_files.h"
 
 namespace quell::app::testing {
 namespace {
@@ -21,6 +24,16 @@ class Variants : public RunnerTest {
     "outputs": { "color": "half.color", "late": "late.color" } })");
     return text(name);
   }
+
+  /// Channels and pixels of all files in a folder. Their headers differ: they tell the graph's name and hash.
+  std::map<std::string, std::pair<std::vector<std::string>, std::vector<float>>> pictures(const std::string& folder) const {
+    std::map<std::string, std::pair<std::vector<std::string>, std::vector<float>>> found;
+    for (const std::string& name : list(folder)) {
+      const quell::test::ExrRead file = quell::test::load_exr(path(folder) / name);
+      found[name] = {file.channels, file.pixels};
+    }
+    return found;
+  }
 };
 
 TEST_F(Variants, ABypassedNodeThatChangedNothingChangesNothing) {
@@ -30,8 +43,8 @@ TEST_F(Variants, ABypassedNodeThatChangedNothingChangesNothing) {
   const Outcome outcome = run({"run", graph, text("shot"), "-o", text("short"), "--bypass", "one"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("--bypass one: 'half.color' (with its delay of 1) is read instead of 'one.color'\n"));
-  EXPECT_EQ(contents("short"), contents("whole"));
-  EXPECT_EQ(contents("short").size(), 12U);
+  EXPECT_EQ(pictures("short"), pictures("whole"));
+  EXPECT_EQ(pictures("short").size(), 12U);
 }
 
 TEST_F(Variants, AGraphWhoseOnlyNodeIsBypassedHandsItsInputOn) {
@@ -41,7 +54,8 @@ TEST_F(Variants, AGraphWhoseOnlyNodeIsBypassedHandsItsInputOn) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   make_graph(R"({ "gain": 1 })");
   EXPECT_EQ(run({"run", text("graph.json"), text("shot"), "-o", text("same"), "--type", "float", "-q"}).code, 0);
-  EXPECT_EQ(contents("out"), contents("same"));
+  EXPECT_EQ(pictures("out"), pictures("same"));
+  EXPECT_EQ(pictures("out").size(), 2U);
 }
 
 TEST_F(Variants, ASwappedPassDoesWhatItDoesInAFile) {
@@ -54,7 +68,8 @@ TEST_F(Variants, ASwappedPassDoesWhatItDoesInAFile) {
   write_file("other.json", R"({ "quell": 1, "inputs": { "color": "color" }, "nodes": { "scale": { "pass": "tonemap",
     "in": { "color": "color" }, "params": { "exposure": -2 } } }, "outputs": { "color": "scale.color" } })");
   EXPECT_EQ(run({"run", text("other.json"), text("shot"), "-o", text("written"), "-q"}).code, 0);
-  EXPECT_EQ(contents("swapped"), contents("written"));
+  EXPECT_EQ(pictures("swapped"), pictures("written"));
+  EXPECT_EQ(pictures("swapped").size(), 2U);
 }
 
 TEST_F(Variants, CheckAndGraphKnowThemToo) {
