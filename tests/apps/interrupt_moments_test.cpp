@@ -10,6 +10,7 @@
 #include "quell/sequence/frame_range.h"
 #include "quell/sequence/sequence.h"
 #include "tests/apps/sample.h"
+#include "tests/core/sequence/test_files.h"
 
 namespace quell::app::testing {
 namespace {
@@ -73,7 +74,11 @@ class InterruptedAnywhere : public RunnerTest {
   }
 
   void expect_whole_files_only(const std::string& message) const {
-    for (const auto& [name, bytes] : contents("out")) EXPECT_EQ(bytes, read_file(path("whole") / name)) << name;
+    for (const std::string& name : list("out")) {  // not byte by byte: `wait_from` is told apart in the graph's hash
+      ASSERT_TRUE(std::filesystem::exists(path("whole") / name)) << name;
+      const test::ExrRead file = test::load_exr(path("out") / name), whole = test::load_exr(path("whole") / name);
+      EXPECT_TRUE(file.channels == whole.channels && file.pixels == whole.pixels) << name;
+    }
     for (const std::int64_t frame : frames_after("frames done: ", message)) {
       const std::string number = std::to_string(frame);
       EXPECT_TRUE(std::filesystem::exists(path("out/color." + std::string(4 - number.size(), '0') + number + ".exr"))) << frame;
