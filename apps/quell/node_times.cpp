@@ -54,6 +54,7 @@ std::string format_line(const Row& row, std::size_t width, const std::string& sh
 
 std::string time_table(const Plan& plan, const std::vector<FrameReport>& reports, double seconds) {
   std::vector<Row> nodes = add_up_nodes(plan, reports);
+  std::erase_if(nodes, [](const Row& row) { return row.frames == 0; });  // kept from an earlier run, or never reached
   const double in_nodes = sum(nodes);
   if (in_nodes <= 0) return "";
   std::stable_sort(nodes.begin(), nodes.end(), [](const Row& a, const Row& b) { return a.seconds > b.seconds; });

@@ -46,6 +46,12 @@ TEST(TimeTable, TakesTheMeanOverTheFramesInWhichANodeRan) {
   EXPECT_THAT(time_table(plan_of({"a"}), {report({0.002}), report({0}), report({})}, 1), HasSubstr("  2.00 ms "));
 }
 
+TEST(TimeTable, LeavesOutWhatDidNotRun) {
+  const std::string table = time_table(plan_of({"kept", "ran"}), {report({0, 1}), report({0, 1})}, 2);
+  EXPECT_THAT(table, HasSubstr("\n  ran "));
+  EXPECT_THAT(table, Not(HasSubstr("kept")));
+}
+
 TEST(TimeTable, IsEmptyWhenNothingRan) {
   EXPECT_EQ(time_table(plan_of({"a"}), {}, 1), "");
   EXPECT_EQ(time_table(plan_of({"a"}), {report({0}, 1)}, 1), "");
