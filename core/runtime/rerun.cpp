@@ -32,11 +32,7 @@ BufferPool::Usage RerunState::usage() const {
 
 RerunReport RerunTurn::run() {
   compare();
-  if (!fits()) {
-    start_anew("memory has no room for a frame beside what is remembered");
-    remembers_ = false;
-    choose();
-  }
+  if (!fits()) start_anew("memory has no room for a frame beside what is remembered");
   try {
     std::optional<std::vector<FrameReport>> reports = compute();
     if (!reports) {
@@ -136,11 +132,12 @@ void RerunTurn::finish(const std::vector<FrameReport>& reports) {
   std::map<std::string, std::string> complete;
   for (const PlannedResult& result : plan_.results()) {
     const bool is_changed = std::ranges::find(report_.results, result.name) != report_.results.end();
-    if (is_changed ? is_whole : true) complete[result.name] = graph_->describe(result.from);
+    if (is_changed ? is_whole : true) complete[result.name] = meaning(result);
   }
   for (const auto& [name, endpoint] : chosen_)
     if (endpoint.node >= 0 && !s_.memory.has_all(name, frames_)) s_.memory.forget(name);
   if (reports.size() == frames_.size()) s_.steady.merge(used_inputs(plan_));
+  std::erase_if(s_.steady, [&](const std::string& input) { return !shapes_.contains(input); });  // another one may get the name
   s_.graph = graph_, s_.frames = frames_, s_.shapes = shapes_;
   s_.stamps = std::move(stamps_), s_.complete = std::move(complete);
   report_.frames = reports;
@@ -153,8 +150,9 @@ Rerun::Rerun(bool together) : state_(std::make_unique<RerunState>()) { state_->t
 Rerun::~Rerun() = default;
 
 RerunReport Rerun::run(std::shared_ptr<const Graph> graph, const std::vector<std::int64_t>& frames, FrameSource& source,
-                       FrameSink& sink, const SessionOptions& options) {
+                       FrameSink& sink, const SessionOptions& options, std::map<std::string, std::string> labels) {
   state_->options = options;
+  state_->labels = std::move(labels);
   return RerunTurn(*state_, std::move(graph), frames, source, sink).run();
 }
 

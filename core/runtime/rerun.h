@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,9 +47,11 @@ class Rerun {
 
   /// As Session::run, but for what need not be computed. What a source serves under a name must not change from run to run, until
   /// forget() is called; other frames, or another shape of an input, are noticed. Throws what Session::run throws; a graph that
-  /// cannot be planned leaves what is remembered as it is. `dumps` are results like the graph's outputs.
+  /// cannot be planned leaves what is remembered as it is. `dumps` are results like the graph's outputs. `labels` says of
+  /// results, by name, what the sink writes beside their values: one with another label than in the run before is handed out
+  /// again.
   RerunReport run(std::shared_ptr<const Graph> graph, const std::vector<std::int64_t>& frames, FrameSource& source,
-                  FrameSink& sink, const SessionOptions& options = {});
+                  FrameSink& sink, const SessionOptions& options = {}, std::map<std::string, std::string> labels = {});
   /// Everything counts as changed.
   void forget();
   /// Of all images, those remembered included. From on_frame, too.

@@ -73,6 +73,9 @@ void RerunTurn::start_anew(const std::string& why) {
   s_.forget();
   unchanged_.assign(graph_->nodes.size(), false);
   split();
+  if (fits()) return;
+  remembers_ = false;
+  choose();
 }
 
 void RerunTurn::compare() {
@@ -97,10 +100,16 @@ void RerunTurn::compare() {
   }
 }
 
+// What a result is, apart from the values that stand at its place.
+std::string RerunTurn::meaning(const PlannedResult& result) const {
+  const auto label = s_.labels.find(result.name);
+  return graph_->describe(result.from) + (label == s_.labels.end() ? "" : "\n" + label->second);
+}
+
 // Whether a result is what was handed out in the run before.
 bool RerunTurn::is_complete(const PlannedResult& result) const {
   const auto before = s_.complete.find(result.name);
-  if (before == s_.complete.end() || before->second != graph_->describe(result.from)) return false;
+  if (before == s_.complete.end() || before->second != meaning(result)) return false;
   return result.from.node < 0 || unchanged_[static_cast<std::size_t>(result.from.node)];
 }
 

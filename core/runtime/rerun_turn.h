@@ -20,6 +20,7 @@ namespace quell {
 struct RerunState {
   bool together = false;
   SessionOptions options;
+  std::map<std::string, std::string> labels;  // of results
   Remembered memory;
   // Of the run before; no graph: there was none, or it is forgotten.
   std::shared_ptr<const Graph> graph;
@@ -27,7 +28,7 @@ struct RerunState {
   InputShapes shapes;
   std::map<std::string, FileStamps> stamps;             // of the files that each node's parameters name
   std::set<std::string> steady;                         // inputs known to be there in every frame, in one shape
-  std::map<std::string, std::string> complete;          // results that were handed out for every frame, and their endpoints
+  std::map<std::string, std::string> complete;          // results that were handed out for every frame, and their meaning
   std::string why_forgotten;                            // "" when there was no run before
   std::function<BufferPool::Usage()> usage_of_running;  // null while nothing runs
   std::size_t peak = 0;
@@ -54,6 +55,7 @@ class RerunTurn {
   }
   void start_anew(const std::string& why);
   void compare();
+  std::string meaning(const PlannedResult& result) const;
   bool is_complete(const PlannedResult& result) const;
   void split();
   InputShapes offered() const;

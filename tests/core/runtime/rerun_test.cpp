@@ -121,6 +121,20 @@ TEST_F(Reruns, HandOutAllResultsOfAFrameWhereTheyGoTogether) {
   EXPECT_THAT(counts(report), ElementsAre(0, 0, 0, 0, 2));
 }
 
+TEST_F(Reruns, HandOutAgainWhatHasAnotherLabel) {
+  const auto results = [&](const std::string& text, std::map<std::string, std::string> labels) {
+    sink = std::make_unique<MemorySink>();
+    return rerun.run(test_graph(text), {1, 2, 3, 4, 5, 6}, source, *sink, options, std::move(labels)).results;
+  };
+  results(graph_text(), {{"color", "x"}, {"second", "y"}});
+  EXPECT_THAT(results(graph_text(), {{"color", "x"}, {"second", "y"}}), IsEmpty());
+  EXPECT_THAT(results(graph_text(), {{"color", "x"}, {"second", "z"}}), ElementsAre("second"));
+  EXPECT_THAT(results(graph_text(1, 2, 3, 40), {{"color", "w"}, {"second", "z"}}), ElementsAre("color"));
+  EXPECT_THAT(results(graph_text(1, 2, 3, 40), {}), ElementsAre("color", "second"));
+  const auto want = whole(graph_text(1, 2, 3, 40));
+  EXPECT_EQ(pixels_of(*sink), want);
+}
+
 TEST_F(Reruns, AreWholeWhereFramesOrInputsAreOthers) {
   run(graph_text());
   EXPECT_THAT(counts(run(graph_text(), {1, 2, 3})), ElementsAre(3, 3, 3, 3, 3));
