@@ -60,7 +60,15 @@ InputShapes imagine_inputs(const Graph& graph, Size size, const std::vector<std:
   return shapes;
 }
 
-void print(const Plan& plan) { std::cout << describe(plan) << "\nhash\n  " << graph_hash(*plan.graph) << "\n" << std::flush; }
+/// Of the graph, and where it has several outputs, of each: their files tell it.
+std::string describe_hashes(const Graph& graph) {
+  std::string text = "\nhash\n  " + graph_hash(graph) + "\n";
+  for (const GraphOutput& output : graph.outputs)
+    if (graph.outputs.size() > 1) text += "  " + graph_hash(graph, {{output.name, output.from}}) + "  " + output.name + "\n";
+  return text;
+}
+
+void print(const Plan& plan) { std::cout << describe(plan) << describe_hashes(*plan.graph) << std::flush; }
 
 ExitCode describe_and_analyze(const std::shared_ptr<const Graph>& graph, const Arguments& arguments, Console& console) {
   const int threads = parse_schedule({.threads = arguments.threads}).threads;

@@ -118,12 +118,19 @@ FileSinkOptions parse_output(const OutputArguments& arguments) {
 
 void complete_output(FileSinkOptions& options, const OutputArguments& arguments, const Job& job) {
   if (arguments.padding.empty()) options.padding = job.sequence->padding();
-  options.attributes = {{"Software", std::string("quell ") + QUELL_VERSION},
-                        {"quell:version", QUELL_VERSION},
-                        {"quell:graph", job.graph->name},
-                        {"quell:graph_hash", graph_hash(*job.graph)}};
-  for (const PlannedResult& result : job.plan.results())
-    if (const PortType type = job.graph->type(result.from); is_image(type)) options.images.push_back({result.name, type});
+  options.attributes = {
+      {"Software", std::string("quell ") + QUELL_VERSION}, {"quell:version", QUELL_VERSION}, {"quell:graph", job.graph->name}};
+  const auto hash_of = [&](const std::map<std::string, Endpoint>& results) {
+    return FileAttribute{"quell:graph_hash", graph_hash(*job.graph, results)};
+  };
+  std::map<std::string, Endpoint> all;
+  for (const PlannedResult& result : job.plan.results()) {
+    const PortType type = job.graph->type(result.from);
+    if (!is_image(type)) continue;
+    all[result.name] = result.from;
+    options.images.push_back({result.name, type, {hash_of({{result.name, result.from}})}});
+  }
+  if (!options.layers.empty()) options.layered_attributes = {hash_of(all)};
   if (!options.layers.empty()) require_one_size(job.plan);
   const int picture = find_picture(job.plan);
   if (options.keep_channels) require_room_for_channels(job.plan, picture, options.images);
@@ -133,6 +140,24 @@ void complete_output(FileSinkOptions& options, const OutputArguments& arguments,
                       images = options.keep_channels ? image_inputs(job.plan) : std::vector<std::string>()](std::int64_t frame) {
     return std::optional(find_original(*sequence, name, images, window, frame));
   };
+}
+
+std::map<std::string, std::string> label_results(const FileSinkOptions& options, const Job& job) {
+  const auto list = [](const std::vector<FileAttribute>& attributes) {
+    std::string text;
+    for (const FileAttribute& attribute : attributes) text += attribute.name + " = " + attribute.text + "\n";
+    return text;
+  };
+  std::string common = list(options.attributes) + list(options.layered_attributes) + std::to_string(options.padding) + "\n";
+  const int picture = find_picture(job.plan);
+  if (picture >= 0) common += "of " + job.graph->inputs[static_cast<std::size_t>(picture)].name + "\n";
+  if (options.keep_channels)  // what is read is not kept, and one of the images is the main one
+    for (const std::string& input : image_inputs(job.plan)) common += "but " + input + "\n";
+  if (options.keep_channels || !options.layers.empty())
+    for (const ResultImage& image : options.images) common += "with " + image.name + "\n";
+  std::map<std::string, std::string> labels;
+  for (const ResultImage& image : options.images) labels[image.name] = common + list(image.attributes);
+  return labels;
 }
 
 void tell_kept_channels(const FileSink& sink, const Job& job) {

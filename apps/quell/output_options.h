@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ FileSinkOptions parse_output(const OutputArguments& arguments);
 /// the digits. Throws Error(usage) when images cannot be layers of one file, or channels cannot be kept. The options may be used
 /// as long as the job's sequence lives.
 void complete_output(FileSinkOptions& options, const OutputArguments& arguments, const Job& job);
+
+/// What the files of each image hold beside its values, and how they are called, in one text: while it stays, and the values do,
+/// the files do. For complete options.
+std::map<std::string, std::string> label_results(const FileSinkOptions& options, const Job& job);
 
 /// Says which channels go over to the results, and which do not.
 void tell_kept_channels(const FileSink& sink, const Job& job);

@@ -61,21 +61,56 @@ std::string value_text(const quell_param_desc& desc, const ParamValue& value) {
   return "[" + text + "]";
 }
 
+using Results = std::map<std::string, Endpoint>;  // by name
+
 class Writer {
  public:
   explicit Writer(const Graph& graph) : graph_(graph) {}
 
-  std::string run() const {
-    Lines inputs, nodes, outputs;
-    for (const GraphInput& input : graph_.inputs)
-      inputs[input.name] = std::string(name(input.type)) + (input.optional ? " optional" : "") + "\n";
-    for (const Node& node : graph_.nodes) nodes[node.name] = node_text(node);
-    for (const GraphOutput& output : graph_.outputs) outputs[output.name] = source(output.from) + "\n";
-    return kFormat + joined("input ", inputs) + joined("node ", nodes) + joined("output ", outputs);
+  std::string whole() {
+    for (const GraphInput& input : graph_.inputs) add_input(input);
+    for (const Node& node : graph_.nodes) nodes_[node.name] = node_text(node);
+    Results outputs;
+    for (const GraphOutput& output : graph_.outputs) outputs[output.name] = output.from;
+    return text(outputs);
+  }
+
+  std::string part(const Results& results) {
+    for (const auto& [name, from] : results) need(from);
+    while (!to_visit_.empty()) {
+      const Node& node = *to_visit_.back();
+      to_visit_.pop_back();
+      for (const std::vector<Edge>& port : node.inputs)
+        for (const Edge& edge : port) {
+          need(edge.from);
+          if (edge.delay != 0 && edge.initial.kind == Initial::Kind::endpoint) need(edge.initial.endpoint);
+        }
+    }
+    return text(results);
   }
 
  private:
   using Lines = std::map<std::string, std::string>;  // by name
+
+  void add_input(const GraphInput& input) {
+    inputs_[input.name] = std::string(name(input.type)) + (input.optional ? " optional" : "") + "\n";
+  }
+
+  void need(const Endpoint& endpoint) {
+    if (endpoint.is_nothing()) return;
+    if (endpoint.node < 0) return add_input(graph_.inputs[static_cast<std::size_t>(endpoint.port)]);
+    const Node& node = graph_.nodes[static_cast<std::size_t>(endpoint.node)];
+    const auto [place, is_new] = nodes_.try_emplace(node.name);
+    if (!is_new) return;
+    place->second = node_text(node);
+    to_visit_.push_back(&node);
+  }
+
+  std::string text(const Results& results) const {
+    Lines outputs;
+    for (const auto& [name, from] : results) outputs[name] = source(from) + "\n";
+    return kFormat + joined("input ", inputs_) + joined("node ", nodes_) + joined("output ", outputs);
+  }
 
   static std::string joined(const std::string& kind, const Lines& lines) {
     std::string text;
@@ -115,15 +150,22 @@ class Writer {
   }
 
   const Graph& graph_;
+  Lines inputs_, nodes_;
+  std::vector<const Node*> to_visit_;
 };
+
+std::string hash_text(const std::string& text) { return hexadecimal(XXH3_128bits(text.data(), text.size())); }
 
 }  // namespace
 
-std::string canonical_text(const Graph& graph) { return Writer(graph).run(); }
+std::string canonical_text(const Graph& graph) { return Writer(graph).whole(); }
+std::string canonical_text(const Graph& graph, const std::map<std::string, Endpoint>& results) {
+  return Writer(graph).part(results);
+}
 
-std::string graph_hash(const Graph& graph) {
-  const std::string text = canonical_text(graph);
-  return hexadecimal(XXH3_128bits(text.data(), text.size()));
+std::string graph_hash(const Graph& graph) { return hash_text(canonical_text(graph)); }
+std::string graph_hash(const Graph& graph, const std::map<std::string, Endpoint>& results) {
+  return hash_text(canonical_text(graph, results));
 }
 
 }  // namespace quell

@@ -87,9 +87,16 @@ struct FileSink::State {
         return 0;
       });
     const bool is_main = output == main_image();
-    if (options.layers.empty() || file.extension() != ".exr") return write({layer(output, *item.image())}, frame, is_main, file);
+    if (options.layers.empty() || file.extension() != ".exr")
+      return write({layer(output, *item.image())}, frame, is_main, attributes(output), file);
     if (std::vector<WrittenLayer> layers = collect(output, frame, *item.image()); !layers.empty())
-      write(std::move(layers), frame, true, file);
+      write(std::move(layers), frame, true, options.layered_attributes, file);
+  }
+
+  std::vector<FileAttribute> attributes(const std::string& output) const {
+    for (const ResultImage& image : options.images)
+      if (image.name == output) return image.attributes;
+    return {};
   }
 
   /// Every layer of the frame, in order, when this image is the last of them; nothing before.
@@ -117,10 +124,11 @@ struct FileSink::State {
     return original ? std::optional<OriginalFile>(*original) : std::nullopt;
   }
 
-  void write(std::vector<WrittenLayer> layers, std::int64_t frame, bool is_main, const fs::path& file) {
+  void write(std::vector<WrittenLayer> layers, std::int64_t frame, bool is_main, std::vector<FileAttribute> attributes,
+             const fs::path& file) {
     std::optional<OriginalFile> original = open_original(frame);
     const FileContent content{std::move(layers), frame, original ? &*original : nullptr,
-                              original && is_main && options.keep_channels};
+                              original && is_main && options.keep_channels, std::move(attributes)};
     write(file, [&](const fs::path& temporary) -> std::uint64_t {
       if (file.extension() == ".exr") return write_exr(content, options, temporary);
       write_png(content, options, temporary);

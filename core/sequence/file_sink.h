@@ -48,6 +48,7 @@ struct Original {
 struct ResultImage {
   std::string name;  ///< as FrameSink::write() is told it
   PortType type = QUELL_TYPE_COLOR;
+  std::vector<FileAttribute> attributes = {};  ///< of its own file, beside those of all files
 };
 
 struct FileSinkOptions {
@@ -57,6 +58,7 @@ struct FileSinkOptions {
   std::string compression = "zip";                      ///< of EXR
   int padding = 4;                                      ///< digits of the frame number, 1..20
   std::vector<FileAttribute> attributes = {};
+  std::vector<FileAttribute> layered_attributes = {};  ///< of files of layers, beside these
   std::vector<ResultImage> images =
       {};  ///< all of a frame, for `layers` and `keep_channels`; `color`, else the first, is the main one
   /// Name of the one EXR file that holds all images of a frame as layers; empty: a file each.

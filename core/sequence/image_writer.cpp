@@ -52,7 +52,8 @@ Placement place(const FileContent& content) {
 
 void add_attributes(OIIO::ImageSpec& spec, const FileContent& content, const FileSinkOptions& options) {
   if (content.original) content.original->add_attributes(spec, content.keep_channels);
-  for (const FileAttribute& attribute : options.attributes) spec.attribute(attribute.name, attribute.text);
+  for (const auto& attributes : {options.attributes, content.attributes})
+    for (const FileAttribute& attribute : attributes) spec.attribute(attribute.name, attribute.text);
   if (!content.frame) return;
   if (*content.frame >= std::numeric_limits<int>::min() && *content.frame <= std::numeric_limits<int>::max())
     spec.attribute("quell:frame", static_cast<int>(*content.frame));

@@ -26,15 +26,16 @@ struct WrittenLayer {
 
 /// What a file holds.
 struct FileContent {
-  std::vector<WrittenLayer> layers;   ///< images of one size
-  std::optional<std::int64_t> frame;  ///< nothing for a picture that is of no frame
-  OriginalFile* original = nullptr;   ///< for attributes and windows
-  bool keep_channels = false;         ///< of `original`
+  std::vector<WrittenLayer> layers;            ///< images of one size
+  std::optional<std::int64_t> frame;           ///< nothing for a picture that is of no frame
+  OriginalFile* original = nullptr;            ///< for attributes and windows
+  bool keep_channels = false;                  ///< of `original`
+  std::vector<FileAttribute> attributes = {};  ///< beside those of the options
 };
 
 /// Where the layers lie. Throws Error(frame) when channels are to be kept that have another size.
 Placement place(const FileContent& content);
-/// Those of the original, those of the options, and the frame.
+/// Those of the original, those of the options, its own, and the frame.
 void add_attributes(OIIO::ImageSpec& spec, const FileContent& content, const FileSinkOptions& options);
 
 /// Writes an EXR file. With `half`, values beyond +-65504 are clamped to it; the number of pixels in which that happened is

@@ -145,6 +145,39 @@ TEST(GraphHash, ChangesWithWhateverChangesAResult) {
   }
 }
 
+// An output's hash must not move with what another one needs, nor stay with what it needs itself.
+TEST(GraphHash, OfAResultIsThatOfWhatFeedsIt) {
+  const auto of = [](const std::string& text, const std::string& result) {
+    const auto graph = parse(text);
+    return graph_hash(*graph, {{result, graph->find(result)}});
+  };
+  const std::string mix = of(kGraph, "mix.color"), moved = of(kGraph, "moved.color"), first = of(kGraph, "first.color");
+  struct Case {
+    std::string text;
+    bool mix, moved, first;  // whether it differs
+  };
+  const std::vector<Case> cases = {
+      {with(R"("radius": 5)", R"("radius": 6)"), true, true, true},
+      {with("[0.1]", "[0.2]"), true, true, false},
+      {with(R"("delay": 1)", R"("delay": 2)"), false, true, false},
+      {with(R"("initial": { "from": "first.color" })", R"("initial": { "from": "color" })"), false, true, false},
+      {with(R"({ "type": "motion", "optional": true })", R"("motion")"), false, true, false},
+      {with(R"(, "before": "first.color")", ""), false, false, false},
+      {with(R"("inputs": {)", R"("inputs": { "more": "color",)"), false, false, false},
+      {with(R"("nodes": {)", R"("nodes": { "more": { "pass": "copy", "in": { "image": "first.color" } },)"), false, false, false},
+  };
+  for (const Case& now : cases) {
+    EXPECT_EQ(of(now.text, "mix.color") != mix, now.mix) << now.text;
+    EXPECT_EQ(of(now.text, "moved.color") != moved, now.moved) << now.text;
+    EXPECT_EQ(of(now.text, "first.color") != first, now.first) << now.text;
+  }
+  const auto graph = parse(kGraph);
+  EXPECT_EQ(canonical_text(*graph, {{"moved.color", graph->find("moved.color")}}),
+            with("output \"before\" \"first.color\"\noutput \"color\" \"mix.color\"\n",
+                 "output \"moved.color\" \"moved.color\"\n", canonical_text(*graph)))
+      << "it needs everything";
+}
+
 TEST(GraphHash, ChangesWithANodesNameBecauseDumpsGoByIt) {
   std::string swapped = kGraph;
   for (std::size_t at = 0; (at = swapped.find("moved", at)) != std::string::npos;) swapped.replace(at, 5, "other");
