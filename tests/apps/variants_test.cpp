@@ -65,11 +65,11 @@ TEST_F(Variants, ASwappedPassDoesWhatItDoesInAFile) {
       run({"run", graph, text("shot"), "-o", text("swapped"), "--swap", "scale=tonemap", "--set", "scale.exposure=-2"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("--swap scale=tonemap: the parameter 'gain' of the file is left out\n"));
-  write_file("other.json", R"({ "quell": 1, "inputs": { "color": "color" }, "nodes": { "scale": { "pass": "tonemap",
+  write_file("other.json",
+             R"({ "quell": 1, "name": "small", "inputs": { "color": "color" }, "nodes": { "scale": { "pass": "tonemap",
     "in": { "color": "color" }, "params": { "exposure": -2 } } }, "outputs": { "color": "scale.color" } })");
   EXPECT_EQ(run({"run", text("other.json"), text("shot"), "-o", text("written"), "-q"}).code, 0);
-  EXPECT_EQ(pictures("swapped"), pictures("written"));
-  EXPECT_EQ(pictures("swapped").size(), 2U);
+  EXPECT_EQ(contents("swapped"), contents("written")) << "to the hash in the header";
 }
 
 TEST_F(Variants, CheckAndGraphKnowThemToo) {
