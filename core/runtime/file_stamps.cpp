@@ -8,8 +8,9 @@ FileStamp stamp(const std::string& file) {
   std::error_code no_time, no_size;
   stamp.time = std::filesystem::last_write_time(file, no_time);
   stamp.size = std::filesystem::file_size(file, no_size);
-  stamp.is_there = !no_time && !no_size;
-  if (!stamp.is_there) stamp.time = {}, stamp.size = 0;
+  stamp.is_there = !no_time;
+  if (no_time) stamp.time = {};
+  if (no_size) stamp.size = 0;  // a folder has none
   return stamp;
 }
 

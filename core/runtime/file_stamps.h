@@ -10,7 +10,7 @@
 
 namespace quell {
 
-/// A file as it was found: its time and size, or that it could not be looked at.
+/// A file as it was found: its time and size, or that it could not be looked at; a folder by its time.
 struct FileStamp {
   std::string file;
   std::filesystem::file_time_type time{};
