@@ -157,7 +157,7 @@ class Bypass {
     edge.from = {source.from.text, option_};
   }
 
-  // A value of an earlier frame's earlier frame: exact where both ways of there being none come to the same.
+  // A value of an earlier frame's earlier frame, as through a subgraph; both ways of there being none have to come to the same.
   bool add_delay(WrittenEdge& edge, const WrittenEdge& source, const Candidate& candidate, const std::string& reader) {
     const WrittenInitial &a = *edge.initial, &b = *source.initial;
     const bool is_same = a.kind == b.kind && a.kind != Initial::Kind::endpoint && a.constant == b.constant;
