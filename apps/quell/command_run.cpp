@@ -72,16 +72,19 @@ struct Preparation {
   Job job;
   std::unique_ptr<FileSink> sink;
   std::vector<ResultFiles> results;
+  std::map<std::string, std::string> labels;  ///< of the results, as label_results() has them
   SessionOptions options;
 };
 
 /// Runs that follow each other.
 struct Watch {
-  explicit Watch(const Arguments& arguments) : passes(load_passes(arguments.graph.plugins)), rerun(arguments.output.is_layered) {
-    files.add({find_graph(arguments.graph.graph)});
-    files.add(arguments.graph.options.params);
+  explicit Watch(const Arguments& arguments)
+      : passes(load_passes(arguments.graph.plugins)), named(arguments.graph.options.params), rerun(arguments.output.is_layered) {
+    named.push_back(find_graph(arguments.graph.graph));
+    files.add(named);
   }
   Registry passes;
+  std::vector<std::filesystem::path> named;  ///< files of the command line
   WatchedFiles files;
   Rerun rerun;
   std::optional<Preparation> last;  ///< of the last run
@@ -107,7 +110,7 @@ ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log,
   };
   RerunReport rerun;
   if (watch) {
-    rerun = watch->rerun.run(job.graph, job.frames, *job.sequence, *run.sink, options);
+    rerun = watch->rerun.run(job.graph, job.frames, *job.sequence, *run.sink, options, run.labels);
   } else {
     rerun.frames = session.emplace(job.graph, options).run(job.frames, *job.sequence, *run.sink);
     rerun.peak_bytes = session->pool().usage().peak;
@@ -144,7 +147,8 @@ Preparation prepare(const Arguments& arguments, Watch* watch) {
   std::vector<ResultFiles> results = list_results(job, *sink, output);
   refuse_to_replace_inputs(job, results);
   if (output.keep_channels) tell_kept_channels(*sink, job);
-  return {std::move(job), std::move(sink), std::move(results), std::move(options)};
+  std::map<std::string, std::string> labels = label_results(output, job);
+  return {std::move(job), std::move(sink), std::move(results), std::move(labels), std::move(options)};
 }
 
 ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, Watch* watch = nullptr) {
@@ -178,6 +182,7 @@ ExitCode run_watching(const Arguments& arguments, RunLog& log, Console& console)
   bool is_right = true;
   while (code != kInterrupted) {
     spdlog::info("waiting for {} to be saved; Ctrl-C ends", watch.last->job.graph->file.string());
+    watch.files.add(watch.named);  // a link may lead elsewhere by now
     if (!watch.files.wait(!is_right, interrupt_event())) return kOk;
     try {
       code = run_logged(arguments, log, console, &watch);

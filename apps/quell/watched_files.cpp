@@ -51,7 +51,8 @@ void WatchedFiles::add_one(const fs::path& file) {
   // Not its making: what is being made is not whole.
   const int number = inotify_add_watch(notifier_, folder.c_str(), IN_CLOSE_WRITE | IN_MOVED_TO);
   if (number < 0) refuse("the folder " + folder.string());
-  names_[number].insert(file.filename().string());
+  folders_[number].path = folder;
+  folders_[number].names.insert(file.filename().string());
 }
 
 bool WatchedFiles::wait(bool or_any_graph, int stop_event) {
@@ -73,8 +74,12 @@ bool WatchedFiles::read_events(bool or_any_graph) {
       const auto* event = reinterpret_cast<const inotify_event*>(buffer.data() + at);
       at += static_cast<ssize_t>(sizeof(inotify_event) + event->len);
       const std::string name = event->len > 0 ? event->name : "";
-      const auto folder = names_.find(event->wd);
-      is_one = is_one || (event->mask & IN_Q_OVERFLOW) != 0 || (folder != names_.end() && folder->second.contains(name)) ||
+      const auto folder = folders_.find(event->wd);
+      const bool is_known = folder != folders_.end();
+      if (is_known && (event->mask & IN_IGNORED) != 0)
+        throw Error(Fault::usage, "--watch",
+                    "the folder " + folder->second.path.string() + " was removed; start again when its files are there");
+      is_one = is_one || (event->mask & IN_Q_OVERFLOW) != 0 || (is_known && folder->second.names.contains(name)) ||
                (or_any_graph && fs::path(name).extension() == ".json");
     }
   return is_one;

@@ -116,6 +116,43 @@ TEST_F(Watch, WritesWholeFilesOfLayers) {
   EXPECT_EQ(contents("out"), contents("whole"));
 }
 
+TEST_F(Watch, LeavesTheFolderThatAWholeRunWouldWriteByteForByte) {
+  make_shot(2);
+  write_file("graph.json", chain("2", "3", kBoth));
+  Program program(watch(text("graph.json"), text("shot")));
+  ASSERT_TRUE(wait_for_runs(1));
+  int runs = 1;
+  const auto expect_whole_after = [&](const std::string& graph) {
+    write_file("graph.json", graph);
+    ASSERT_TRUE(wait_for_runs(++runs));
+    EXPECT_EQ(run({"run", text("graph.json"), text("shot"), "-o", text("whole"), "-q", "--plugin-path", TEST_PLUGINS}).code, 0);
+    EXPECT_EQ(contents("out"), contents("whole")) << graph;
+  };
+  expect_whole_after(chain("2", "4", kBoth));  // `inner` stays as it is
+  expect_whole_after(replaced(chain("2", "4", kBoth), "\"quell\": 1", "\"quell\": 1, \"name\": \"renamed\""));
+  expect_whole_after(
+      replaced(chain("2", "4", kBoth), "\"color\": \"color\"", "\"color\": { \"type\": \"color\", \"optional\": true }"));
+  const Outcome outcome = end(program);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("\nsecond: 2 of 2 frames; first: kept\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("\nfirst, second: kept\n")) << "only headers differ";
+}
+
+TEST_F(Watch, TakesALayerThatIsNoLongerAnOutputOutOfItsFile) {
+  make_shot(2);
+  write_file("graph.json", chain("2", "3", kBoth));
+  Program program(watch(text("graph.json"), text("shot"), {"--layers", "all"}));
+  ASSERT_TRUE(wait_for_runs(1));
+  write_file("graph.json", chain("2", "3", R"("color": "second.color")"));
+  ASSERT_TRUE(wait_for_runs(2));
+  EXPECT_EQ(end(program).code, 0);
+  EXPECT_EQ(
+      run({"run", text("graph.json"), text("shot"), "-o", text("whole"), "--layers", "all", "-q", "--plugin-path", TEST_PLUGINS})
+          .code,
+      0);
+  EXPECT_EQ(contents("out"), contents("whole"));
+}
+
 TEST_F(Watch, WritesOnlyWhatHasChangedAndLeavesWhatIsNoLongerAnOutput) {
   make_shot(2);
   write_file("graph.json", chain("2", "3", kBoth));
@@ -151,6 +188,32 @@ TEST_F(Watch, TellsEveryMistakeAndWaitsForTheNextSaving) {
   EXPECT_THAT(outcome.err, HasSubstr("has no output 'colour'"));
   EXPECT_THAT(outcome.err, HasSubstr("'second.gain' takes a number from 0"));
   EXPECT_EQ(outcome.code, 0) << outcome.err;
+}
+
+TEST_F(Watch, EndsWhenTheFolderOfTheGraphIsRemoved) {
+  make_shot(2);
+  write_file("graphs/graph.json", chain("2", "3", kBoth));
+  Program program(watch(text("graphs/graph.json"), text("shot")));
+  ASSERT_TRUE(wait_for_runs(1));
+  fs::remove_all(path("graphs"));
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--watch: the folder " + text("graphs") + " was removed; start again when its files are"));
+}
+
+TEST_F(Watch, FollowsALinkThatLeadsElsewhere) {
+  make_shot(2);
+  write_file("a/graph.json", chain("2", "3", kBoth));
+  write_file("b/graph.json", "{");
+  fs::create_symlink("a/graph.json", path("graph.json"));
+  Program program(watch(text("graph.json"), text("shot")));
+  ASSERT_TRUE(wait_for_runs(1));
+  fs::create_symlink("b/graph.json", path("other.json"));
+  fs::rename(path("other.json"), path("graph.json"));
+  ASSERT_TRUE(wait_for_runs(2));  // it tells the mistake
+  write_file("b/graph.json", chain("2", "5", kBoth));
+  ASSERT_TRUE(program.wait_for_error_text("\nsecond: 2 of 2 frames; first: kept\n"));
+  EXPECT_EQ(end(program).code, 0);
 }
 
 TEST_F(Watch, AMistakeBeforeTheFirstFrameEndsIt) {
@@ -190,6 +253,24 @@ TEST_F(Watch, FollowsSubgraphsParametersAndFilesOfPasses) {
   const Outcome outcome = end(program);
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(count(outcome.err, "\nlast: 2 of 2 frames; sub.first: kept\n"), 2) << outcome.err;
+}
+
+TEST_F(Watch, NoticesWhatIsAddedToAFolderThatAParameterNames) {
+  make_shot(2);
+  fs::create_directories(path("tables"));
+  const std::string graph = R"({ "quell": 1, "inputs": { "color": "color" }, "nodes": {
+    "only": { "pass": "test_scale", "in": { "color": "color" }, "params": { "table": "tables" } } },
+    "outputs": { "color": "only.color" } })";
+  write_file("graph.json", graph);
+  Program program(watch(text("graph.json"), text("shot")));
+  ASSERT_TRUE(wait_for_runs(1));
+  write_file("graph.json", graph);
+  ASSERT_TRUE(program.wait_for_error_text("\nnothing that is written has changed\n"));
+  ASSERT_TRUE(wait_for_runs(2));
+  write_file("tables/a.txt", "1");
+  write_file("graph.json", graph);
+  ASSERT_TRUE(program.wait_for_error_text("\nonly: 2 of 2 frames\n"));
+  EXPECT_EQ(end(program).code, 0);
 }
 
 TEST_F(Watch, OpensTheSequenceAgainForOtherInputs) {
