@@ -22,14 +22,14 @@ using testing::IsEmpty;
 class OutputLayers : public testing::Test {
  protected:
   /// One image a type; every value is `value`.
-  Image image(PortType type, float value, Size size = {3, 2}) {
+  Image image(PortType type, double value, Size size = {3, 2}) {
     Image made(type, size, pool_);
     for (int c = 0; c < made.channels(); ++c)
       for (int y = 0; y < size.height; ++y) {
         if (type == QUELL_TYPE_ID)
           std::fill_n(made.writable_ids().row(y, c), size.width, static_cast<std::uint32_t>(value));
         else
-          std::fill_n(made.writable_floats().row(y, c), size.width, value);
+          std::fill_n(made.writable_floats().row(y, c), size.width, static_cast<float>(value));
       }
     return made;
   }
@@ -40,7 +40,7 @@ class OutputLayers : public testing::Test {
     return chosen;
   }
   void write_frame(FileSink& sink, std::int64_t frame) {
-    sink.write("id", frame, image(QUELL_TYPE_ID, 4294967295.0F));
+    sink.write("id", frame, image(QUELL_TYPE_ID, 4294967295.0));
     sink.write("color", frame, image(QUELL_TYPE_COLOR, 0.5F));
     sink.write("input.normal", frame, image(QUELL_TYPE_NORMAL, 0.1F));
   }
@@ -96,7 +96,7 @@ TEST_F(OutputLayers, HaveTheSameBytesInWhateverOrderTheyCome) {
   FileSink late(other);
   late.write("input.normal", 1, image(QUELL_TYPE_NORMAL, 0.1F));
   late.write("color", 1, image(QUELL_TYPE_COLOR, 0.5F));
-  late.write("id", 1, image(QUELL_TYPE_ID, 4294967295.0F));
+  late.write("id", 1, image(QUELL_TYPE_ID, 4294967295.0));
   EXPECT_EQ(test::read_bytes(folder_ / "out/beauty.0001.exr"), test::read_bytes(folder_ / "other/beauty.0001.exr"));
 }
 
