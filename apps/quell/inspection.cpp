@@ -5,6 +5,7 @@
 
 #include "quell/sequence/checks/checks.h"
 #include "quell/sequence/checks/load_frame.h"
+#include "quell/text/shell_word.h"
 
 namespace quell::app {
 namespace {
@@ -42,14 +43,6 @@ Finding check_files(const Sequence& sequence) {
   return finding;
 }
 
-/// As a shell has to be told it.
-std::string quoted(const std::string& option) {
-  if (option.find_first_of(" '\"$&;()<>|*?#") == std::string::npos) return option;
-  std::string text = "'";
-  for (const char c : option) text += c == '\'' ? "'\\''" : std::string(1, c);
-  return text + "'";
-}
-
 /// The option that states everything about the input that is known, and what has to change.
 std::string option_for(const Remedy& remedy, const FrameData& frame, const Sequence& sequence) {
   std::string option = remedy.input + "=";
@@ -63,7 +56,7 @@ std::string option_for(const Remedy& remedy, const FrameData& frame, const Seque
   }
   std::string settings = describe(all);
   for (std::size_t at = settings.find(", "); at != std::string::npos; at = settings.find(", ")) settings.replace(at, 2, ":");
-  return "--in " + quoted(option + ":" + settings);
+  return "--in " + shell_word(option + ":" + settings);
 }
 
 std::size_t count_tested(const std::vector<Finding>& findings) {

@@ -1,17 +1,10 @@
 #include "installation.h"
 
 #include "graph_files.h"
+#include "quell/text/shell_word.h"
 
 namespace quell::app {
 namespace fs = std::filesystem;
-
-std::string shell_word(const std::string& text) {
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+-=:@%,";
-  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
 
 CMakePrefix cmake_prefix() {
   std::error_code error;

@@ -7,9 +7,6 @@
 
 namespace quell::app {
 
-/// A word of a command line, quoted where a shell needs it.
-std::string shell_word(const std::string& text);
-
 /// How CMake is told where this quell is: commands to give once before, none where it is installed, and what follows
 /// -DCMAKE_PREFIX_PATH=.
 struct CMakePrefix {

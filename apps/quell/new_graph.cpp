@@ -6,6 +6,7 @@
 #include "new_names.h"
 #include "new_skeleton.h"
 #include "quell/text/error.h"
+#include "quell/text/shell_word.h"
 #include "source_tree.h"
 #include "templates.h"
 

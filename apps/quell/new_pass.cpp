@@ -4,6 +4,7 @@
 #include "new_skeleton.h"
 #include "quell/plugin/registry.h"
 #include "quell/text/error.h"
+#include "quell/text/shell_word.h"
 #include "source_tree.h"
 #include "templates.h"
 

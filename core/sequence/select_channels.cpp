@@ -3,6 +3,7 @@
 #include "quell/sequence/image_input.h"
 #include "quell/sequence/renderer_names.h"
 #include "quell/text/diagnostic.h"
+#include "quell/text/shell_word.h"
 
 namespace quell {
 namespace {
@@ -43,18 +44,6 @@ std::string needs(PortType type) {
          (planes == 1   ? "1 channel"
           : planes == 2 ? "2 channels (X,Y, R,G or U,V)"
                         : "3 channels (R,G,B or X,Y,Z)");
-}
-
-/// As a shell has to be told it.
-std::string shell_word(const std::string& text) {
-  const auto is_plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("_./%#=:,-+@").find(c) != std::string_view::npos;
-  };
-  if (std::all_of(text.begin(), text.end(), is_plain)) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
 }
 
 class Selector {
