@@ -84,15 +84,21 @@ std::string OriginalFile::layer() const {
 std::vector<KeptChannel> OriginalFile::choose(const std::vector<std::string>& taken, std::vector<std::string>* left_out) const {
   std::set<std::string> names(taken.begin(), taken.end());
   std::vector<KeptChannel> kept;
-  for (std::size_t i = 0; i < file_.channels().size(); ++i) {
+  const std::string own = layer();
+  const auto add = [&](std::size_t i, const std::string& name) {
     const FileChannel& channel = file_.channels()[i];
-    if (is_read(channel.name)) continue;
-    const std::string name = channel.name.starts_with(layer()) ? channel.name.substr(layer().size()) : channel.name;
+    if (is_read(channel.name)) return;
     if (names.insert(name).second)
       kept.push_back({name, static_cast<int>(i), channel.numbers == Numbers::half, channel.numbers == Numbers::uint32});
     else if (left_out)
       left_out->push_back(channel.name);
-  }
+  };
+  // The picture's own layer first: its "A" is the picture's alpha, not one that stands beside the layers.
+  for (const bool of_own : {true, false})
+    for (std::size_t i = 0; i < file_.channels().size(); ++i) {
+      const std::string& name = file_.channels()[i].name;
+      if (name.starts_with(own) == of_own) add(i, of_own ? name.substr(own.size()) : name);
+    }
   return kept;
 }
 
