@@ -97,7 +97,8 @@ void OriginalFile::read_part(int part, const std::vector<Copied>& channels, cons
                       ? state.file->read_tiles(part, 0, spec.x, spec.x + spec.width, top, bottom, 0, 1, begin, end,
                                                OIIO::TypeUnknown, pixels.data())
                       : state.file->read_scanlines(part, 0, top, bottom, 0, begin, end, OIIO::TypeUnknown, pixels.data());
-  if (!ok) state.fail("truncated or damaged: " + one_line(state.file->geterror()));
+  const std::string why = state.file->geterror();  // as in BandReader, of TIFF the only sign
+  if (!ok || !why.empty()) state.fail("truncated or damaged: " + one_line(why));
   for (const Copied& channel : channels) {
     const auto from = static_cast<std::size_t>(spec.pixel_bytes(begin, channel.index, true));
     for (int y = covered.y; y < covered.y + covered.height; ++y) {
