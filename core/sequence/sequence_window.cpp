@@ -34,13 +34,15 @@ PictureWindow Sequence::State::find_window(const SequenceInput& picture) {
   PictureWindow window{file.display_window(), file.display_window(), file.pixel_aspect()};
   if (window_choice == WindowChoice::data) window.data = file.data_window(selection(picture).channels[0]);
   if (!crop) return window;
-  const Rectangle wanted{window.data.x + crop->x, window.data.y + crop->y, crop->width, crop->height};
-  if (crop->empty() || intersection(wanted, window.data) != wanted)
+  const auto fits = [](int begin, int size, int whole) {
+    return begin >= 0 && size >= 1 && size <= whole && begin <= whole - size;
+  };
+  if (!fits(crop->x, crop->width, window.data.width) || !fits(crop->y, crop->height, window.data.height))
     throw Error(Fault::usage, "--crop",
                 std::to_string(crop->x) + "," + std::to_string(crop->y) + "," + std::to_string(crop->width) + "," +
                     std::to_string(crop->height) + " is not all within the image, which is " + size_text(window.data) + " (" +
                     path.string() + "); the numbers are x, y, width and height");
-  window.data = wanted;
+  window.data = {window.data.x + crop->x, window.data.y + crop->y, crop->width, crop->height};
   return window;
 }
 

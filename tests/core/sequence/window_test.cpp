@@ -1,4 +1,6 @@
 // Which part of the images a sequence reads: display window, data window, crop.
+#include <climits>
+
 #include "quell/sequence/sequence.h"
 #include "tests/core/sequence/layout_rows.h"
 
@@ -90,7 +92,8 @@ TEST_F(WindowOf, ACropOfTheDataWindowCountsFromItsCorner) {
 }
 
 TEST_F(WindowOf, ACropBeyondTheImageSaysItsSize) {
-  for (const Rectangle crop : {Rectangle{3, 0, 2, 1}, {0, 3, 1, 1}, {0, 0, 5, 3}}) {
+  for (const Rectangle crop :
+       {Rectangle{3, 0, 2, 1}, {0, 3, 1, 1}, {0, 0, 5, 3}, {-1, 0, 1, 1}, {0, 0, 0, 1}, {INT_MAX, 0, 1, 1}, {1, 0, INT_MAX, 1}}) {
     const auto sequence = open({.crop = crop});
     EXPECT_THAT(message_of(Fault::usage, [&] { sequence->shape("depth"); }),
                 HasSubstr(" is not all within the image, which is 4 x 3 (" + (folder_ / "depth.0001.exr").string() + ")"));
