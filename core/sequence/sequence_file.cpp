@@ -53,6 +53,11 @@ class Reader {
 
   void read_root(const Json& root, SequenceFile& result) {
     if (!expect(root, Json::Kind::object, "an object with \"quell_sequence\": 1 and \"inputs\"")) return;
+    if (root.find("nodes") && !root.find("quell_sequence"))
+      return errors_.error(
+          root.where,
+          "this is a graph, not a sequence; a sequence is a folder of images, or a file with \"quell_sequence\": 1 "
+          "and \"inputs\"");
     check_keys(root, kTopKeys);
     const Json* version = root.find("quell_sequence");
     if (!version)

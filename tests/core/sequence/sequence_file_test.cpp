@@ -26,6 +26,12 @@ class SequenceFileText : public testing::Test {
   test::TempFolder folder_;
 };
 
+TEST_F(SequenceFileText, AGraphIsCalledOne) {
+  const std::string text = error(R"({"quell": 1, "inputs": {"color": "color"}, "nodes": {}})");
+  EXPECT_THAT(text, testing::StartsWith("s.json:1:1: error: this is a graph, not a sequence; a sequence is a folder of images"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("unknown key")));
+}
+
 TEST_F(SequenceFileText, ReadsEverything) {
   const SequenceFile file = read(R"({
     // comments and trailing commas are allowed
