@@ -83,9 +83,10 @@ Image read_floats(const Source& source, BufferPool& pool, ConversionContext cont
   return image;
 }
 
-std::string describe_window(const Rectangle& covered, const Rectangle& data, const Rectangle& wanted) {
+/// `part`: of what the display window shows, a part was asked for, beyond which files may reach.
+std::string describe_window(const Rectangle& covered, const Rectangle& data, const Rectangle& wanted, bool part) {
   const auto size = [](const Rectangle& r) { return std::to_string(r.width) + " x " + std::to_string(r.height); };
-  const bool cropped = covered.width < data.width || covered.height < data.height;
+  const bool cropped = !part && (covered.width < data.width || covered.height < data.height);
   std::string text = "the file's pixels ";
   if (cropped) text += "reach beyond the image of " + size(wanted) + " and are cropped";
   if (covered != wanted)
@@ -120,7 +121,7 @@ Image read_image(const std::filesystem::path& path, const ImageRequest& request,
     const Rectangle covered = find_covered(source);
     const Rectangle& data = file.data_window(source.selection.channels[0]);
     if (covered != window || (!request.window && covered != data))
-      note(path.string() + ": " + describe_window(covered, data, window));
+      note(describe_window(covered, data, window, request.window.has_value()));
     const Rectangle inside{covered.x - window.x, covered.y - window.y, covered.width, covered.height};
     fill_outside(image, covered.empty() ? Rectangle{} : inside);
     return image;

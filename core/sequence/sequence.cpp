@@ -209,7 +209,7 @@ Item Sequence::read(std::string_view name, std::int64_t frame, BufferPool& pool)
   request.camera = [&](int frames_back) { return state_->find_camera(frame - frames_back); };
   return read_image(file, request, pool, [&](const std::string& note) {
     const std::lock_guard lock(state_->mutex);
-    state_->warnings.insert(note);
+    state_->warnings.insert(input.spec.pattern.text() + ": " + note);  // not the file, or thousands of frames would say the same
   });
 }
 
