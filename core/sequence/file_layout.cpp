@@ -6,6 +6,7 @@
 #include "quell/sequence/input_spec.h"
 #include "quell/sequence/renderer_names.h"
 #include "quell/text/diagnostic.h"
+#include "quell/text/shell_word.h"
 
 namespace quell {
 namespace {
@@ -20,10 +21,15 @@ PortType type_of(const std::string& input) {
 
 [[noreturn]] void fail_unrecognized(const std::filesystem::path& file) {
   std::string text = "no input is recognized by the names of its layers:";
-  for (const Layer& layer : group_layers(ImageFile(file).channels()))
-    text +=
-        "\n  " + (layer.name.empty() ? "without a layer, " + std::to_string(layer.channels.size()) + " channels" : layer.name);
-  throw Error(Fault::input, file.string(), text + "\nname what to read, for example: --in color=" + file.string() + ":LAYER");
+  const std::vector<Layer> layers = group_layers(ImageFile(file).channels());
+  for (const Layer& layer : layers) {
+    const std::size_t count = layer.channels.size();
+    const std::string channels = std::to_string(count) + (count == 1 ? " channel" : " channels");
+    text += "\n  " + (layer.name.empty() ? "without a layer, " + channels : layer.name);
+  }
+  const bool is_plain = layers.size() == 1 && layers.front().name.empty();  // as it is, it may be any input
+  throw Error(Fault::input, file.string(),
+              text + "\nsay what it is, for example: --in " + shell_word("depth=" + file.string() + (is_plain ? "" : ":LAYER")));
 }
 
 /// Sidecars beside the files, else the files themselves when they have matrices in their headers; nothing when neither is there.

@@ -156,9 +156,8 @@ TEST_F(LayersOf, AMisspeltLayerIsToldWithSuggestions) {
 
 TEST_F(LayersOf, AFileInWhichNothingIsRecognizedIsToldWithItsLayers) {
   make_channels(folder_ / "odd.0001.exr", {{"foo.p", 1, 1}, {"foo.q", 1, 1}, {"bar", 1, 1}});
-  EXPECT_THAT(
-      message_of(Fault::input, [&] { open({}, "odd.####.exr"); }),
-      HasSubstr("odd.0001.exr: no input is recognized by the names of its layers:\n  without a layer, 1 channels\n  foo"));
+  EXPECT_THAT(message_of(Fault::input, [&] { open({}, "odd.####.exr"); }),
+              HasSubstr("odd.0001.exr: no input is recognized by the names of its layers:\n  without a layer, 1 channel\n  foo"));
   EXPECT_THAT(
       error({"normal=" + (folder_ / "odd.####.exr").string()}, "normal", ""),
       HasSubstr("nothing in this file is recognized as the input 'normal' (normal needs 3 channels (R,G,B or X,Y,Z)); it has:\n"
