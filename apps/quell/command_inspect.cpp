@@ -10,6 +10,7 @@
 #include "quell/sequence/checks/picture.h"
 #include "quell/sequence/image_writer.h"
 #include "quell/sequence/pending_file.h"
+#include "quell/text/diagnostic.h"
 #include "results.h"
 
 namespace quell::app {
@@ -41,7 +42,7 @@ void tell_file(const fs::path& path, Console& console) {
     show(console, "reading " + path.filename().string() + ": " + std::to_string(static_cast<int>(100 * share)) + " %");
   });
   console.set_status("");
-  std::cout << text << std::flush;
+  std::cout << printable(text) << std::flush;  // names and attributes are whatever the file says
 }
 
 /// The sequence, or nothing for a single file in which nothing is recognized: its content was told, and there is nothing to test.
@@ -86,7 +87,7 @@ ExitCode test(Sequence& sequence, const Arguments& arguments, Console& console) 
                       std::to_string(frames.size()) + ")");
   });
   console.set_status("");
-  std::cout << describe(inspection) << std::flush;
+  std::cout << printable(describe(inspection)) << std::flush;
   for (const std::string& warning : sequence.warnings()) spdlog::warn(warning);
   if (arguments.json) write_json(*arguments.json, inspection, sequence);
   if (arguments.picture) write_picture(*arguments.picture, inspection, arguments.sequence.sequence.string());
@@ -103,7 +104,7 @@ ExitCode run(const Arguments& arguments, Console& console) {
   if (is_image_file(arguments.sequence.sequence)) tell_file(arguments.sequence.sequence, console);
   const std::unique_ptr<Sequence> sequence = open_sequence(arguments.sequence);
   if (!sequence) return kOk;
-  std::cout << sequence->describe() << "\n" << std::flush;
+  std::cout << printable(sequence->describe()) << "\n" << std::flush;
   return test(*sequence, arguments, console);
 }
 
