@@ -430,6 +430,7 @@ void make_turned_camera(const std::filesystem::path& file) {
 std::vector<LayoutRow> layout_rows() {
   std::vector<LayoutRow> rows = rows_of_renderers();
   for (LayoutRow& row : rows_of_formats()) rows.push_back(std::move(row));
+  for (LayoutRow& row : structure_rows()) rows.push_back(std::move(row));
   return rows;
 }
 

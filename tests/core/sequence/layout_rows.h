@@ -10,20 +10,25 @@
 
 namespace quell::test {
 
-/// Frame 1 of a sequence of 2 x 1 pixels.
+/// Frame 1 of a sequence.
 struct LayoutRow {
   std::string name;      ///< of the test, letters only
   std::string renderer;  ///< who writes this
   std::string writes;    ///< what, for the table
   std::string input;     ///< as which input it is read
-  std::string told;      ///< what the sequence's description says of it, the conventions above all; "" for nothing
+  std::string told;      ///< what the sequence says of it, the conventions above all; "" for nothing
   std::function<void(const TempFolder&)> write;
-  std::string sequence;              ///< SEQUENCE: a name in the folder; "" for the folder
-  std::vector<double> expected;      ///< plane after plane; an id without surface is 4294967295
+  std::string sequence;  ///< SEQUENCE: a name in the folder; "" for the folder
+  /// Plane after plane; an id without surface is 4294967295. Of a camera: where it sees (11, 21, 34) in pixels, and the depth.
+  std::vector<double> expected;
   std::vector<std::string> in = {};  ///< --in options, where FOLDER stands for the folder
+  Size size = {2, 1};
+  float pixel_aspect = 1;
 };
 
 std::vector<LayoutRow> layout_rows();
+/// Those about how files are built, and about cameras in headers; layout_rows() has them, too.
+std::vector<LayoutRow> structure_rows();
 /// The rows as a Markdown table.
 std::string layout_table();
 

@@ -20,6 +20,12 @@ std::string line_of(const std::string& description, const std::string& input) {
   return "no line of " + input + " in: " + description;
 }
 
+/// Where a point of the world is seen, in pixels, and the projection's w.
+std::vector<double> see(const Matrix& m, const std::array<double, 3>& p) {
+  const auto row = [&](std::size_t r) { return m[4 * r] * p[0] + m[4 * r + 1] * p[1] + m[4 * r + 2] * p[2] + m[4 * r + 3]; };
+  return {row(0) / row(3), row(1) / row(3), row(3)};
+}
+
 TEST_P(Layouts, AreRecognizedAndRead) {
   const LayoutRow& row = GetParam();
   const test::TempFolder folder;
@@ -32,15 +38,20 @@ TEST_P(Layouts, AreRecognizedAndRead) {
   }
   const auto sequence = Sequence::open(row.sequence.empty() ? folder.path() : folder / row.sequence, options);
   const std::string line = line_of(sequence->describe(), row.input);
-  if (row.told.empty())
+  BufferPool pool;
+  const Item item = sequence->read(row.input, 1, pool);
+  if (item.camera())
+    EXPECT_THAT(sequence->warnings(), testing::ElementsAre(HasSubstr(row.told)));
+  else if (row.told.empty())
     EXPECT_THAT(line, testing::EndsWith("frames 1"));
   else
     EXPECT_THAT(line, HasSubstr(row.told));
-  BufferPool pool;
-  const Item item = sequence->read(row.input, 1, pool);
-  ASSERT_EQ(sequence->shape(row.input)->size, (Size{2, 1}));
+  ASSERT_EQ(item.camera() ? item.camera()->camera().size : sequence->shape(row.input)->size, row.size);
+  EXPECT_EQ(sequence->picture_window()->pixel_aspect, row.pixel_aspect);
   std::vector<double> got;
-  if (item.type() == QUELL_TYPE_ID)
+  if (item.camera())
+    got = see(item.camera()->camera().world_to_screen, {11, 21, 34});
+  else if (item.type() == QUELL_TYPE_ID)
     for (const std::uint32_t id : test::id_values(*item.image())) got.push_back(id);
   else
     for (const float value : test::values(*item.image())) got.push_back(value);
