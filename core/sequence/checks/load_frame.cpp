@@ -7,6 +7,17 @@
 namespace quell {
 namespace {
 
+/// What an --in option names to choose these channels among others; "" for channels that are in no layer.
+std::string choice_of(const StoredImage& stored) {
+  const std::vector<std::string>& channels = stored.channels;
+  if (channels.front().find('.') == std::string::npos) return "";
+  if (channels.size() == 1) return channels.front();
+  if (!stored.selection.layer.empty()) return stored.selection.layer;
+  std::string named = "channels=";
+  for (const std::string& channel : channels) named += (&channel == &channels.front() ? "" : ",") + channel;
+  return named;
+}
+
 class Loader {
  public:
   Loader(Sequence& sequence, std::int64_t frame, BufferPool& pool, std::vector<Finding>& problems)
@@ -58,8 +69,7 @@ class Loader {
       image.stored = std::move(stored.image);
       image.read_as = stored.conventions;
       image.numbers = stored.numbers;
-      if (!stored.selection.layer.empty())
-        image.layer = stored.channels.size() == 1 ? stored.channels.front() : stored.selection.layer;
+      image.layer = choice_of(stored);
       image.whole = stored.whole, image.x = stored.x, image.y = stored.y;
       image.image = *sequence_.read(input.input, data_.frame, pool_).image();
     } catch (const Error& error) {

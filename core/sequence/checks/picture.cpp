@@ -141,6 +141,7 @@ Paint paint_motion(const FloatImage& motion, std::string& note) {
 /// Hues of the directions, in the panel's corner.
 void draw_wheel(Raster& raster) {
   const int radius = std::min(raster.width, raster.height) / 10;
+  if (radius < 1) return;  // a strip, in which there is no place for it
   for (int y = -radius; y <= radius; ++y)
     for (int x = -radius; x <= radius; ++x)
       if (const double length = std::hypot(x, y); length <= radius)

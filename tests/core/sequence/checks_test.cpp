@@ -481,41 +481,12 @@ TEST(Colors, WhereAlphaIsZeroAreStraight) {
   EXPECT_EQ(find(check_frame(frame), kAlphaSubject).verdict, Verdict::ok);
 }
 
-TEST(BadNumbers, AreCountedByInputAndPlane) {
-  FrameData frame = Scene().read(2, {}, {});
-  frame.color->stored.writable_floats().at(1, 1, 2) = std::numeric_limits<float>::quiet_NaN();
-  frame.color->stored.writable_floats().at(2, 1, 2) = std::numeric_limits<float>::infinity();
-  frame.normal->stored.writable_floats().at(5, 5, 0) = std::numeric_limits<float>::quiet_NaN();
-  frame.depth->stored.writable_floats().at(0, 0) = std::numeric_limits<float>::infinity();  // means no surface
-  const Finding finding = find(check_frame(frame), kFiniteSubject);
-  EXPECT_EQ(finding.verdict, Verdict::suspicious);
-  EXPECT_THAT(finding.text, HasSubstr("color: 1 NaN and 1 infinite in plane 3"));
-  EXPECT_THAT(finding.text, HasSubstr("normal: 1 NaN in plane 1"));
-  EXPECT_EQ(figure(finding, "count"), 3);
-}
-
 TEST(BadNumbers, LeaveTheOtherPixelsToBeJudged) {
   FrameData frame = Scene().read(2, {}, {});
   for (auto* image : {&frame.position, &frame.normal, &frame.motion, &frame.depth})
     for (int c = 0; c < (*image)->image.channels(); ++c)
       (*image)->image.writable_floats().at(40, 40, c) = std::numeric_limits<float>::quiet_NaN();
   for (const Finding& finding : check_frame(frame)) EXPECT_EQ(finding.verdict, Verdict::ok) << finding.subject << finding.text;
-}
-
-// ------------------------------------------------------------------------------------------------------- many frames
-
-TEST(WorstOf, KeepsTheMostAlarmingFindingOfEachSubject) {
-  const auto make = [](Verdict verdict, const char* subject, double value, std::int64_t frame) {
-    Finding finding{verdict, subject, ""};
-    finding.figures = {{"value", value}}, finding.frame = frame;
-    return finding;
-  };
-  const auto worst = worst_of({make(Verdict::not_tested, "a", 0, 1), make(Verdict::ok, "b", 3, 1), make(Verdict::ok, "a", 1, 2),
-                               make(Verdict::ok, "b", 5, 2), make(Verdict::wrong, "c", 1, 2), make(Verdict::ok, "c", 9, 3)});
-  ASSERT_EQ(worst.size(), 3U);
-  EXPECT_EQ(worst[0].verdict, Verdict::ok);
-  EXPECT_EQ(worst[1].frame, 2);
-  EXPECT_EQ(worst[2].verdict, Verdict::wrong);
 }
 
 }  // namespace
