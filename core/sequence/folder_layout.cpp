@@ -3,6 +3,7 @@
 #include <set>
 
 #include "quell/sequence/frame_range.h"
+#include "quell/sequence/image_file.h"
 #include "quell/sequence/input_spec.h"
 #include "quell/sequence/renderer_names.h"
 #include "quell/text/diagnostic.h"
@@ -162,6 +163,20 @@ std::string describe_layout(const Candidates& candidates) {
   return "one file for each buffer";
 }
 
+/// The camera in the headers of files with layers, as when they are given by a pattern.
+void add_header_camera(FolderLayout& layout, const Candidates& candidates) {
+  for (const auto& [input, choices] : candidates) {
+    const Candidate& files = choices.front();
+    if (!files.shared || !layout.inputs.contains(input)) continue;
+    const ImageFile first(files.pattern.path(files.frames.front()));
+    if (!first.matrix("worldToCamera") || !first.matrix("worldToNDC")) continue;
+    InputSpec spec = layout.inputs.at(input);
+    spec.name = "camera", spec.shared = false;
+    layout.inputs.emplace("camera", std::move(spec));
+    return;
+  }
+}
+
 }  // namespace
 
 FolderLayout recognize_folder(const std::filesystem::path& folder, const InputSpecs& elsewhere,
@@ -189,6 +204,7 @@ FolderLayout recognize_folder(const std::filesystem::path& folder, const InputSp
     layout.inputs.emplace(input, std::move(spec));
   }
   if (!ambiguities.empty()) throw Error(Fault::input, folder.string(), ambiguities);
+  if (!candidates.contains("camera") && !elsewhere.contains("camera")) add_header_camera(layout, candidates);
   return layout;
 }
 

@@ -130,9 +130,8 @@ void header_of_pbrt(const TempFolder& folder) {
 
 LayoutRow row_of_header(const std::string& name, const std::string& writer, const std::string& reading,
                         std::function<void(const TempFolder&)> write) {
-  LayoutRow row{
-      name,           writer, "`worldToCamera`, `worldToNDC` in the header", "camera", reading, std::move(write), "shot.####.exr",
-      {2.25, 0.75, 4}};
+  LayoutRow row{name, writer,         "`worldToCamera`, `worldToNDC` in the header", "camera", reading, std::move(write),
+                "",   {2.25, 0.75, 4}};
   row.size = {4, 2};
   return row;
 }
