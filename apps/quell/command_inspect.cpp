@@ -63,7 +63,13 @@ std::vector<std::int64_t> frames_to_test(const Sequence& sequence, const Argumen
   if (all.empty())
     throw Error(Fault::input, arguments.sequence.sequence.empty() ? "--in" : arguments.sequence.sequence.string(),
                 "no input has any file");
-  return arguments.sequence.frames ? all : choose_frames(all);
+  if (!arguments.sequence.frames) return choose_frames(all);
+  const auto has_one = [&](const InputFiles& input) {
+    return std::ranges::any_of(input.frames, [&](std::int64_t frame) { return std::ranges::binary_search(all, frame); });
+  };
+  if (std::ranges::none_of(sequence.inputs(), has_one))
+    throw Error(Fault::input, "--frames", "no input has a file of the frames " + FrameRange(all).text() + "; see the list above");
+  return all;
 }
 
 void write_picture(const fs::path& file, const Inspection& inspection, const std::string& title) {
@@ -96,6 +102,8 @@ ExitCode test(Sequence& sequence, const Arguments& arguments, Console& console) 
 
 ExitCode run(const Arguments& arguments, Console& console) {
   set_verbosity(arguments.verbosity.verbosity());
+  if (arguments.picture && arguments.picture->extension() != ".png")
+    throw Error(Fault::usage, "--picture", "'" + arguments.picture->string() + "' is no name of a PNG; let it end in .png");
   if (arguments.picture) refuse_to_replace_others(*arguments.picture, "\x89PNG", "--picture");
   if (arguments.json) refuse_to_replace_others(*arguments.json, "{\"sequence\":", "--json");
   if (!arguments.sequence.given())

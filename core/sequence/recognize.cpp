@@ -8,7 +8,8 @@
 namespace quell {
 namespace {
 
-constexpr int kLastResort = 9;  // worse than every row
+constexpr int kLastResort = 9;     // worse than every row
+constexpr int kOwnNameInside = 2;  // "filter.color": worse than a file's plain R,G,B
 
 using Channels = std::vector<FileChannel>;
 
@@ -68,12 +69,13 @@ std::optional<Candidate> match_layer(std::span<const RendererName> rows, std::st
   return std::nullopt;
 }
 
-/// A layer that has the input's own name.
+/// A layer that has the input's own name, wholly or in its last part.
 std::optional<Candidate> match_own_name(const Layer& layer, const Channels& channels, std::string_view input, PortType type) {
   if (layer.name.empty() || !matches(input, layer.name)) return std::nullopt;
   auto chosen = usual_channels(layer, channels, info(type).channels, false);
   if (chosen.empty()) return std::nullopt;
-  return Candidate{select(layer, std::move(chosen), channels), 0};
+  const bool is_whole = upper(layer.name) == upper(input);
+  return Candidate{select(layer, std::move(chosen), channels), is_whole ? 0 : kOwnNameInside};
 }
 
 /// Whether a layer is known as something else than a color.

@@ -31,8 +31,8 @@ std::span<const RendererName> renderer_file_names();
 /// Whether a name ends as a row's pattern says; case does not count.
 bool matches(std::string_view pattern, std::string_view name);
 
-/// What a file offers for an input: nothing, the one candidate of the best rank, or several of that rank. A layer (or its last
-/// part) that has the input's own name counts like a row of rank 0.
+/// What a file offers for an input: nothing, the one candidate of the best rank, or several of that rank. A layer
+/// that has the input's own name counts like a row of rank 0, and like one of rank 2 where only its last part is that name.
 std::vector<Selection> recognize(const std::vector<FileChannel>& channels, std::string_view input, PortType type);
 /// The same for a file of one image by its name ("Mogwai.GBufferRT.mvec").
 std::vector<Selection> recognize_by_file_name(std::string_view stem, const std::vector<FileChannel>& channels,

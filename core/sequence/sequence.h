@@ -85,7 +85,8 @@ class Sequence final : public FrameSource {
   /// What was recognized, a line each, for printing: the input, its files, and of files with several layers, or of which
   /// something is stated, also the layer, the channels, the renderer and the conventions.
   std::string describe() const;
-  /// The layers of the files that serve several inputs, a line each, for a person who misses one; "" when there are no such files.
+  /// The layers of the files that serve several inputs, a line each, for a person who misses one; "" when there are no such
+  /// files.
   std::string describe_layers() const;
   /// What a person should know: padding that differs from the disk's, images that cover only part of their frame. Grows while
   /// reading.

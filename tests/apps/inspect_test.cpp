@@ -33,6 +33,12 @@ class Inspect : public RunnerTest {
   }
 };
 
+TEST_F(Inspect, RefusesFramesOfWhichThereIsNoFile) {
+  const Outcome outcome = inspect({kSample, "--frames", "98-99"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("--frames: no input has a file of the frames 98-99; see the list above\n"));
+}
+
 TEST_F(Inspect, FindsNothingWrongWithTheSample) {
   const Outcome outcome = inspect({kSample});
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
@@ -113,6 +119,7 @@ TEST_F(Inspect, TellsADamagedFileAndGoesOn) {
 
 TEST_F(Inspect, DrawsAPictureAndWritesJson) {
   make_shot(1);
+  EXPECT_THAT(inspect({text("shot"), "--picture", text("sheet.txt")}).err, HasSubstr("let it end in .png"));
   write_file("theirs.png", "not a picture");
   EXPECT_EQ(inspect({text("shot"), "--picture", text("theirs.png")}).code, 2);
   EXPECT_EQ(read_file(path("theirs.png")), "not a picture");

@@ -67,6 +67,18 @@ TEST(Recognition, TheBestRankWinsAndEqualOnesAreAllTold) {
               ElementsAre("a.Depth: a.Depth.Z", "b.Depth: b.Depth.Z"));
 }
 
+// As quell itself writes inner images beside a result.
+TEST(Recognition, ALayerThatOnlyEndsInTheInputsNameIsWorseThanPlainChannelsAndTheWholeName) {
+  EXPECT_THAT(candidates({"R", "G", "B", "filter.color.R", "filter.color.G", "filter.color.B"}, "color", QUELL_TYPE_COLOR),
+              ElementsAre(": R G B"));
+  EXPECT_THAT(candidates({"filter.albedo.R", "filter.albedo.G", "filter.albedo.B", "albedo.R", "albedo.G", "albedo.B"}, "albedo",
+                         QUELL_TYPE_ALBEDO),
+              ElementsAre("albedo: albedo.R albedo.G albedo.B"));
+  EXPECT_THAT(candidates({"a.albedo.R", "a.albedo.G", "a.albedo.B", "b.albedo.R", "b.albedo.G", "b.albedo.B"}, "albedo",
+                         QUELL_TYPE_ALBEDO),
+              ElementsAre("a.albedo: a.albedo.R a.albedo.G a.albedo.B", "b.albedo: b.albedo.R b.albedo.G b.albedo.B"));
+}
+
 TEST(Recognition, AnInputOfAnotherNameIsServedByItsTypeButForColors) {
   EXPECT_THAT(candidates({"N.X", "N.Y", "N.Z"}, "surface", QUELL_TYPE_NORMAL), ElementsAre("N: N.X N.Y N.Z"));
   EXPECT_THAT(candidates({"R", "G", "B"}, "diffuse", QUELL_TYPE_COLOR), ElementsAre());
