@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/quell)
 
-install(TARGETS quell_sdk quell_core quell_sequence quell_testing EXPORT quellTargets)
+install(TARGETS quell_sdk quell_core quell_sequence quell_metrics quell_testing EXPORT quellTargets)
 install(EXPORT quellTargets NAMESPACE quell:: DESTINATION ${package_dir})
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/core/cmake/quellConfig.cmake.in ${PROJECT_BINARY_DIR}/quellConfig.cmake
@@ -15,6 +15,7 @@ install(FILES ${PROJECT_BINARY_DIR}/quellConfig.cmake ${PROJECT_BINARY_DIR}/quel
 
 # The public headers by name: what is not listed is private to its box.
 set(public_headers
+  simd/vectors-inl.h
   sdk/abi.h sdk/types.h sdk/frame.h sdk/params.h sdk/pass.h
   text/error.h text/diagnostic.h text/json.h text/json_write.h
   image/port_type.h image/buffer_pool.h image/image.h image/item.h image/stream.h
@@ -24,6 +25,7 @@ set(public_headers
   runtime/thread_budget.h runtime/trace.h runtime/window.h
   sequence/sequence.h sequence/frame_range.h sequence/file_sink.h sequence/image_file.h sequence/image_input.h
   sequence/conventions.h sequence/layers.h
+  metrics/comparison.h metrics/display.h metrics/flip.h metrics/metric.h metrics/parallel.h
   testing/pass_test.h testing/conformance.h testing/conformance_checks.h testing/synthetic.h)
 foreach(header IN LISTS public_headers)
   cmake_path(GET header PARENT_PATH box)

@@ -15,7 +15,7 @@
 #define HWY_TARGET_INCLUDE "passes/spatial/joint_bilateral_kernel.cpp"  // from the repository root
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which makes it visible again for every vector unit.
-#include "passes/spatial/joint_bilateral_math-inl.h"
+#include "quell/simd/vectors-inl.h"
 
 #ifndef QUELL_JOINT_BILATERAL_SHARED  // what is the same for all vector units
 #define QUELL_JOINT_BILATERAL_SHARED
@@ -47,6 +47,7 @@ constexpr int tile_stride(int radius) { return (kTileWidth + 2 * radius + 16 + 1
 
 HWY_BEFORE_NAMESPACE();
 namespace quell::joint_bilateral::HWY_NAMESPACE {
+using namespace simd::HWY_NAMESPACE;  // NOLINT: the vocabulary of kernels
 
 using Mask = hn::Mask<D>;
 

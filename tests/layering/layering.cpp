@@ -14,23 +14,24 @@ using Names = std::set<std::string, std::less<>>;
 // What each box of core/ may include besides itself. A pass is a box of its own that sees the SDK alone.
 const std::map<std::string, Names, std::less<>> kMayInclude = {
     {"core/sdk", {}},
+    {"core/simd", {"sdk", "text"}},
     {"core/text", {"sdk"}},
     {"core/image", {"sdk", "text"}},
     {"core/plugin", {"sdk", "text", "image"}},
     {"core/graph", {"sdk", "text", "image", "plugin"}},
     {"core/runtime", {"sdk", "text", "image", "plugin", "graph"}},
     {"core/sequence", {"sdk", "text", "image"}},
-    {"core/metrics", {"sdk", "text", "image"}},
-    {"core/testing", {"sdk", "text", "image", "plugin", "graph", "runtime"}},
-    {"passes", {"sdk"}},
-    {"apps", {"sdk", "text", "image", "plugin", "graph", "runtime", "sequence", "metrics"}},
+    {"core/metrics", {"sdk", "simd", "text", "image"}},
+    {"core/testing", {"sdk", "simd", "text", "image", "plugin", "graph", "runtime"}},
+    {"passes", {"sdk", "simd"}},
+    {"apps", {"sdk", "simd", "text", "image", "plugin", "graph", "runtime", "sequence", "metrics"}},
 };
 
 // Third-party headers by the first part of their path, and where they may appear.
 const std::map<std::string, Names, std::less<>> kThirdParty = {
     {"nlohmann", {"core/text"}},  {"OpenImageIO", {"core/sequence"}},
     {"tbb", {"core/runtime"}},    {"oneapi", {"core/runtime"}},
-    {"OpenColorIO", {"passes"}},  {"hwy", {"passes"}},
+    {"OpenColorIO", {"passes"}},  {"hwy", {"passes", "core/metrics", "core/simd"}},
     {"spdlog", {"apps"}},         {"CLI", {"apps"}},
     {"xxhash.h", {"core/graph"}}, {"gtest", {"core/testing"}},
     {"gmock", {"core/testing"}},

@@ -1,11 +1,11 @@
-// Vectors of pixels, and the functions of the joint bilateral filter's weights. Included once for every vector unit.
+// Vectors of pixels, and the functions that weights are made of, for kernels on Highway. Included once for every vector unit.
 // Formulas and error bounds: relative errors of the polynomials, to which a few roundings of float (6e-8 each) come.
 // Coefficients: own Remez fits. All of it breaks under -ffast-math.
-#if defined(QUELL_JOINT_BILATERAL_MATH) == defined(HWY_TARGET_TOGGLE)
-#ifdef QUELL_JOINT_BILATERAL_MATH
-#undef QUELL_JOINT_BILATERAL_MATH
+#if defined(QUELL_SIMD_VECTORS) == defined(HWY_TARGET_TOGGLE)
+#ifdef QUELL_SIMD_VECTORS
+#undef QUELL_SIMD_VECTORS
 #else
-#define QUELL_JOINT_BILATERAL_MATH
+#define QUELL_SIMD_VECTORS
 #endif
 
 #include <hwy/highway.h>
@@ -14,7 +14,7 @@
 #include <cstddef>
 
 HWY_BEFORE_NAMESPACE();
-namespace quell::joint_bilateral::HWY_NAMESPACE {
+namespace quell::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int kMaxLanes = 16;  // so that a whole vector may be loaded past the end of a row
@@ -93,6 +93,6 @@ HWY_INLINE V squared_angle_wide(V chord) {
   return hn::IfThenElse(hn::Gt(chord, opposite_chord), hn::Mul(rest, rest), p);
 }
 
-}  // namespace quell::joint_bilateral::HWY_NAMESPACE
+}  // namespace quell::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

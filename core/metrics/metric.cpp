@@ -1,0 +1,1 @@
+#include "quell/metrics/metric.h"
