@@ -9,6 +9,7 @@
 #include "arguments.h"
 #include "commands.h"
 #include "graphviz.h"
+#include "isa_option.h"
 #include "job.h"
 #include "quell/graph/graph_hash.h"
 #include "quell/graph/plan_dot.h"
@@ -31,6 +32,7 @@ struct Arguments {
   bool dot = false, svg = false;
   std::optional<std::string> out;
   std::string threads = "0";
+  IsaArguments isa;
 };
 
 Size parse_size(const std::string& text) {
@@ -71,6 +73,7 @@ std::string describe_hashes(const Graph& graph) {
 void print(const Plan& plan) { std::cout << describe(plan) << describe_hashes(*plan.graph) << std::flush; }
 
 ExitCode describe_and_analyze(const std::shared_ptr<const Graph>& graph, const Arguments& arguments, Console& console) {
+  pin_isa(arguments.isa);
   const int threads = parse_schedule({.threads = arguments.threads}).threads;
   Job job = prepare_job(graph, arguments.sequence);
   if (!arguments.sequence.frames && job.frames.size() > kMeasuredFrames) job.frames.resize(kMeasuredFrames);
@@ -157,6 +160,8 @@ Command add_graph(CLI::App& program) {
            "Threads for --analyze; 0, the default, for as many as there are processors.")
       ->needs(analyze)
       ->group(kScheduleGroup);
+  add_options(app, arguments->isa);
+  app.get_option("--isa")->needs(analyze);
   add_drawing_options(app, *arguments);
   add_options(app, arguments->verbosity);
   return {&app, [arguments](Console& console) { return run(*arguments, console); }};

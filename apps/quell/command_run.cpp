@@ -8,12 +8,14 @@
 #include "commands.h"
 #include "graph_files.h"
 #include "interrupt.h"
+#include "isa_option.h"
 #include "job.h"
 #include "output_options.h"
 #include "progress.h"
 #include "quell/runtime/rerun.h"
 #include "quell/runtime/session.h"
 #include "quell/runtime/window.h"
+#include "quell/simd/isa.h"
 #include "results.h"
 #include "run_log.h"
 #include "run_options.h"
@@ -29,6 +31,7 @@ struct Arguments {
   GraphArguments graph;
   SequenceArguments sequence;
   ScheduleArguments schedule;
+  IsaArguments isa;
   VerbosityArguments verbosity;
   OutputArguments output;
   std::vector<std::string> dumps;
@@ -161,6 +164,7 @@ ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, W
     return kOk;
   }
   spdlog::debug("up to {} frames at a time ({}), and {} of images", window.frames, window.reason, format_bytes(window.memory));
+  spdlog::debug("computing on {}", current_isa());
   prepare_folder(arguments.output.folder);
   log.start(run.job, run.results, options, window);
   std::optional<TraceFile> trace;
@@ -199,6 +203,7 @@ ExitCode run_watching(const Arguments& arguments, RunLog& log, Console& console)
 ExitCode run(const Arguments& arguments, Console& console) {
   handle_interrupts();
   set_verbosity(arguments.verbosity.verbosity());
+  pin_isa(arguments.isa);
   RunLog log(arguments.dry_run ? std::nullopt : arguments.log_json);
   try {
     return arguments.watch ? run_watching(arguments, log, console) : run_logged(arguments, log, console);
@@ -240,6 +245,7 @@ Command add_run(CLI::App& program) {
   add_options(app, arguments->sequence);
   add_output_options(app, *arguments);
   add_options(app, arguments->schedule);
+  add_options(app, arguments->isa);
   app.add_flag("--watch", arguments->watch,
                "After the run wait until the graph file, one that it includes or a --params file is saved, and compute anew what "
                "that can affect; Ctrl-C ends.")

@@ -8,6 +8,7 @@
 #include "json_lines.h"
 #include "quell/graph/graph_hash.h"
 #include "quell/sdk/abi.h"
+#include "quell/simd/isa.h"
 
 namespace quell::app {
 namespace {
@@ -90,6 +91,7 @@ void RunLog::start(const Job& job, const std::vector<ResultFiles>& results, cons
                                    .number("frame_count", job.frames.size())
                                    .text("executor", options.schedule == Schedule::serial ? "serial" : "tbb")
                                    .number("threads", options.threads > 0 ? options.threads : available_threads())
+                                   .text("isa", current_isa())
                                    .number("frames_in_flight", window.frames)
                                    .number("memory_limit", window.memory)
                                    .text("on_error", options.stop_on_error ? "stop" : "continue"));

@@ -6,6 +6,7 @@
 #include "quell/graph/plan.h"
 #include "quell/plugin/registry.h"
 #include "quell/runtime/single_frame.h"
+#include "quell/simd/isa.h"
 #include "quell/testing/pass_graph.h"
 #include "quell/text/diagnostic.h"
 #include "quell/text/json.h"
@@ -52,6 +53,7 @@ struct PassTest::State {
   std::vector<std::pair<std::string, Item>> outputs;
 
   explicit State(const quell_pass_desc& pass) : graph{pass} {
+    pin_isa_from_environment();
     const quell_pass_desc* passes[] = {&pass};
     registry.add(passes, 1);
     pool.fill(kNanByte);

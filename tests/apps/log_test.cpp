@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "quell/simd/isa.h"
 #include "quell/text/json.h"
 #include "tests/apps/sample.h"
 
@@ -63,6 +64,7 @@ TEST_F(Log, TellsARunFromStartToEnd) {
   EXPECT_EQ(text_of(start, "frames"), "1-3");
   EXPECT_EQ(start.find("frame_count")->integer, 3);
   EXPECT_EQ(text_of(start, "executor"), "tbb");
+  EXPECT_EQ(text_of(start, "isa"), current_isa());
   EXPECT_EQ(start.find("threads")->integer, 2);
   EXPECT_GE(start.find("frames_in_flight")->integer, 1);
   EXPECT_EQ(start.find("memory_limit")->integer, 1 << 30);
