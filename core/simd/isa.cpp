@@ -37,8 +37,13 @@ std::vector<std::int64_t> split(std::int64_t targets) {
 }
 
 /// Of this machine, whatever is pinned later: the first call is made before that.
+std::int64_t here() {
+  static const std::int64_t targets = hwy::SupportedTargets();
+  return targets;
+}
+
 const std::vector<std::int64_t>& machine_targets() {
-  static const std::vector<std::int64_t> all = split(hwy::SupportedTargets() & HWY_TARGETS);
+  static const std::vector<std::int64_t> all = split(here() & HWY_TARGETS);
   return all;
 }
 
@@ -68,8 +73,10 @@ std::string current_isa() { return name_of(split(hwy::SupportedTargets() & HWY_T
 void pin_isa(std::string_view name, std::string_view where) {
   const auto place = std::ranges::find(isas(), name);
   if (name != "best" && place == isas().end()) refuse(name, where);
-  const std::int64_t target = name == "best" ? 1 : machine_targets()[static_cast<std::size_t>(place - isas().begin())];
-  hwy::DisableTargets(target - 1);  // all that are better, also those that only a plugin is compiled for
+  // Not DisableTargets(), which the next call of SupportedTargets(), whoever makes it, would undo for kernels. A target and all
+  // behind it, which are worse, are what is left; none stands for all of the machine.
+  const std::int64_t target = name == "best" ? 0 : machine_targets()[static_cast<std::size_t>(place - isas().begin())];
+  hwy::SetSupportedTargetsForTest(-target & here());
   is_pinned = true;
 }
 

@@ -1,90 +1,53 @@
-// Figures that must be reached, each a ratio within one run, so that it holds on slow and fast machines alike.
-//
-// Prints a line for each, and returns 1 when one is missed. Wants a machine that has nothing else to do.
-#include <algorithm>
+// Measures all figures that must be reached, prints a line for each, and returns 1 when one is missed. Wants a machine that has
+// nothing else to do.
 #include <cstdio>
-#include <functional>
+#include <exception>
 
-#include "quell/runtime/analysis.h"
-#include "tests/bench/in_memory.h"
+#include "quell/runtime/executor.h"
+#include "quell/simd/isa.h"
+#include "quell/text/diagnostic.h"
+#include "tests/bench/figure.h"
 
 namespace quell::bench {
 namespace {
 
-constexpr Size kSize{64, 64};
-constexpr int kFrames = 24;
-constexpr int kRepeats = 5;
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
+void print(const Figure& figure) {
+  if (!figure.skipped.empty()) {
+    std::printf("skip     -          %-72s  %s\n", figure.what.c_str(), figure.skipped.c_str());
+  } else {
+    std::printf("%-4s %9.4g  %-8s %6.4g  %-52s  %s\n", figure.missed() ? "MISS" : "pass", figure.reached,
+                figure.at_most ? "at most" : "at least", figure.bar, figure.what.c_str(), figure.note.c_str());
+  }
+  std::fflush(stdout);
 }
 
-double median_of_repeats(const std::function<double()>& measure) {
-  std::vector<double> figures;
-  for (int i = 0; i < kRepeats; ++i) figures.push_back(measure());
-  return median(figures);
+/// Whether all are reached.
+bool measure(const char* subject, std::vector<Figure> (*figures)()) {
+  std::printf("%s\n", subject);
+  std::fflush(stdout);
+  bool all = true;
+  for (const Figure& figure : figures()) {
+    print(figure);
+    all = all && !figure.missed();
+  }
+  return all;
 }
 
-/// About 20 ms of one thread in each branch.
-const char* const kBranches = R"({"quell": 1, "inputs": {"color": "color"},
-  "nodes": {"left":  {"pass": "burn", "in": {"color": "color"}, "params": {"rounds": 15000000}},
-            "right": {"pass": "burn", "in": {"color": "color"}, "params": {"rounds": 15000000}},
-            "sum":   {"pass": "burn", "in": {"color": "left.color", "other": "right.color"}}},
-  "outputs": {"color": "sum.color"}})";
-
-/// A loop of 2 ms, and 40 ms beside it that one thread at a time can do.
-const char* const kCheapLoop = R"({"quell": 1, "inputs": {"color": "color"},
-  "nodes": {"loop": {"pass": "burn", "in": {"color": "color", "other": {"from": "loop.color", "delay": 1, "initial": "none"}},
-                     "params": {"rounds": 1500000}},
-            "a": {"pass": "burn", "in": {"color": "loop.color"}, "params": {"rounds": 15000000}},
-            "b": {"pass": "burn", "in": {"color": "a.color"}, "params": {"rounds": 15000000}}},
-  "outputs": {"color": "b.color"}})";
-
-/// Two independent branches on two threads, against one node after the other.
-double gain_of_branches() {
-  const auto graph = make_graph(kBranches);
-  return median_of_repeats([&] {
-    const double serial = time_run(graph, kSize, kFrames, {.threads = 2, .schedule = Schedule::serial});
-    return serial / time_run(graph, kSize, kFrames, {.threads = 2, .frames_in_flight = 1});
-  });
+int run() {
+  std::printf("%d processors; vector units %s\n", available_threads(), list_names(isas(), "and").c_str());
+  bool all = measure("scheduler", scheduler_figures);
+  all = measure("joint_bilateral", joint_bilateral_figures) && all;
+  return all ? 0 : 1;
 }
-
-/// The time of a frame that analyze() says cannot be beaten, against the time that it takes.
-double reached_of_bound() {
-  const auto graph = make_graph(kCheapLoop);
-  return median_of_repeats([&] {
-    OneImage source(kSize);
-    Nowhere sink;
-    const Plan plan = make_plan(graph, {{"color", source.shape("color")}});
-    const Analysis analysis = analyze(plan, measure(graph, first_frames(6), source, sink, {.threads = 2}));
-    const double taken = time_run(graph, kSize, kFrames, {.threads = 2}) / kFrames;
-    return analysis.seconds_per_frame() / taken;
-  });
-}
-
-struct Figure {
-  const char* what;
-  double wanted;
-  std::function<double()> measure;
-};
 
 }  // namespace
 }  // namespace quell::bench
 
 int main() {
-  using namespace quell::bench;
-  const std::vector<Figure> figures = {
-      {"two independent branches on two threads, times as fast as one after the other", 1.8, gain_of_branches},
-      {"a cheap loop beside costly nodes, part of the bound that is reached", 0.9, reached_of_bound},
-  };
-  bool all = true;
-  for (const Figure& figure : figures) {
-    const double reached = figure.measure();
-    all = all && reached >= figure.wanted;
-    std::printf("%-6s %.3f, at least %.2f is wanted: %s\n", reached >= figure.wanted ? "ok" : "MISSED", reached, figure.wanted,
-                figure.what);
-    std::fflush(stdout);
+  try {
+    return quell::bench::run();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return 2;
   }
-  return all ? 0 : 1;
 }

@@ -1,11 +1,23 @@
 #include "quell/simd/isa.h"
 
 #include <gmock/gmock.h>
-#include <hwy/highway.h>
 
 #include <cstdlib>
 
 #include "quell/text/error.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tests/core/simd/isa_test.cpp"  // from the repository root
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace quell::HWY_NAMESPACE {
+std::int64_t Target() { return HWY_TARGET; }
+}  // namespace quell::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 
 namespace quell {
 namespace {
@@ -19,13 +31,13 @@ class Isas : public ::testing::Test {
   void TearDown() override { pin_isa("best", "test"); }
 };
 
-/// What a kernel compiled here would be dispatched to.
-std::int64_t dispatched() { return hwy::SupportedTargets() & HWY_TARGETS & -(hwy::SupportedTargets() & HWY_TARGETS); }
+HWY_EXPORT(Target);
+std::int64_t dispatched() { return HWY_DYNAMIC_DISPATCH(Target)(); }
 
 TEST_F(Isas, BeginWithTheBestThatTheMachineHas) {
   EXPECT_EQ(current_isa(), isas().front());
-  EXPECT_EQ(isas().size(), static_cast<std::size_t>(
-                               __builtin_popcountll(static_cast<unsigned long long>(hwy::SupportedTargets() & HWY_TARGETS))));
+  const auto targets = static_cast<unsigned long long>(hwy::SupportedTargets() & HWY_TARGETS);
+  EXPECT_EQ(isas().size(), static_cast<std::size_t>(__builtin_popcountll(targets)));
 }
 
 TEST_F(Isas, AreWhatKernelsRunOnOncePinned) {
@@ -33,11 +45,19 @@ TEST_F(Isas, AreWhatKernelsRunOnOncePinned) {
   for (const std::string& name : isas()) {
     pin_isa(name, "test");
     EXPECT_EQ(current_isa(), name);
-    EXPECT_GT(dispatched(), before) << name << " is no other than the one before";
+    EXPECT_GT(dispatched(), before) << name << " is no worse than the one before";
     before = dispatched();
   }
   pin_isa("best", "test");
   EXPECT_EQ(current_isa(), isas().front());
+}
+
+TEST_F(Isas, StayPinnedWhoeverAsksForTheMachines) {
+  pin_isa(isas().back(), "test");
+  const std::int64_t pinned = dispatched();
+  EXPECT_EQ(current_isa(), isas().back());
+  EXPECT_NE(hwy::SupportedTargets(), 0);
+  EXPECT_EQ(dispatched(), pinned);
 }
 
 TEST_F(Isas, StayThoseOfTheMachineWhenOneIsPinned) {
@@ -66,3 +86,4 @@ TEST_F(Isas, AreNotTakenFromTheEnvironmentOnceOneIsPinned) {
 
 }  // namespace
 }  // namespace quell
+#endif

@@ -1,0 +1,250 @@
+// The loops use as many registers as the smallest unit has (16), and tell the compiler by empty assembly what it may not fold: an
+// operand may have changed since it was last seen, a result is needed. Neither costs an instruction.
+#include "tests/bench/ceilings.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <barrier>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "quell/simd/isa.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tests/bench/ceilings.cpp"  // from the repository root
+#include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which makes it visible again for every vector unit.
+#include "quell/simd/vectors-inl.h"
+
+#ifndef QUELL_BENCH_CEILINGS_SHARED  // what is the same for all vector units
+#define QUELL_BENCH_CEILINGS_SHARED
+namespace quell::bench {
+
+enum class Op { fma, add, mul, min_max, divide, root, estimate, shift, logic };
+
+// The operations of a mix in an order in which each kind is spread evenly.
+template <Mix kMix>
+constexpr auto spread() {
+  constexpr int kCounts[] = {kMix.fma,  kMix.add,      kMix.mul,   kMix.min_max, kMix.divide,
+                             kMix.root, kMix.estimate, kMix.shift, kMix.logic};
+  std::array<Op, static_cast<std::size_t>(kMix.operations())> order{};
+  int done[std::size(kCounts)] = {};
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    std::size_t next = 0;
+    double largest = -1;
+    for (std::size_t k = 0; k < std::size(kCounts); ++k) {
+      const double behind = static_cast<double>(i + 1) * kCounts[k] / kMix.operations() - done[k];
+      if (done[k] < kCounts[k] && behind > largest) largest = behind, next = k;
+    }
+    ++done[next];
+    order[i] = static_cast<Op>(next);
+  }
+  return order;
+}
+
+constexpr std::size_t kChains = 10;  // of multiply-adds: enough to hide their latency beside the other operations
+
+}  // namespace quell::bench
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace quell::bench::HWY_NAMESPACE {
+using namespace simd::HWY_NAMESPACE;  // NOLINT: the vocabulary of kernels
+
+#if HWY_ARCH_X86
+#define QUELL_VECTOR_REGISTER "v"
+#else
+#define QUELL_VECTOR_REGISTER "w"
+#endif
+HWY_INLINE void may_change(V& v) { asm volatile("" : "+" QUELL_VECTOR_REGISTER(v.raw)); }
+HWY_INLINE void need(V v) { asm volatile("" : : QUELL_VECTOR_REGISTER(v.raw)); }
+#undef QUELL_VECTOR_REGISTER
+
+// An operation whose second operand is `b`. A multiply-add goes to a chain, since its result takes the place of an operand; all
+// others are by themselves.
+template <Op kOp>
+HWY_INLINE void operate(V& chain, V& a, V b) {
+  const D d;
+  const hn::RebindToUnsigned<D> du;
+  may_change(a);
+  if constexpr (kOp == Op::fma) chain = hn::MulAdd(a, b, chain);
+  if constexpr (kOp == Op::add) need(hn::Sub(a, b));
+  if constexpr (kOp == Op::mul) need(hn::Mul(a, b));
+  if constexpr (kOp == Op::min_max) need(hn::Min(a, b));
+  if constexpr (kOp == Op::divide) need(hn::Div(a, b));
+  if constexpr (kOp == Op::root) need(hn::Sqrt(a));
+  if constexpr (kOp == Op::estimate) need(hn::ApproximateReciprocal(a));
+  if constexpr (kOp == Op::shift) need(hn::BitCast(d, hn::ShiftLeft<23>(hn::BitCast(du, a))));
+  if constexpr (kOp == Op::logic) need(hn::And(a, b));
+}
+
+template <Mix kMix, std::size_t kIndex>
+HWY_INLINE void step(V* chains, V& a, V b, const float* memory) {
+  constexpr auto kOrder = spread<kMix>();
+  constexpr std::size_t kCount = kOrder.size(), kLoads = static_cast<std::size_t>(kMix.load);
+  // Loads are the second operand of operations that are spread evenly.
+  constexpr bool kLoadsHere = (kIndex + 1) * kLoads / kCount > kIndex * kLoads / kCount;
+  if constexpr (kLoadsHere) b = hn::LoadU(D(), memory + kIndex % 8 * kMaxLanes);
+  operate<kOrder[kIndex]>(chains[kIndex % kChains], a, b);
+}
+
+template <Mix kMix, std::size_t... kIndices>
+HWY_INLINE void all_steps(V* chains, V& a, V b, const float* memory, std::index_sequence<kIndices...>) {
+  (step<kMix, kIndices>(chains, a, b, memory), ...);
+}
+
+template <Mix kMix>
+void run_mix(std::int64_t rounds) {
+  HWY_ALIGN float memory[8 * kMaxLanes];
+  std::fill_n(memory, 8 * kMaxLanes, 1.0F);
+  V chains[kChains], a = set(1.0F);
+  for (V& chain : chains) chain = set(0.0F);
+  const V b = set(1.0F);
+  for (std::int64_t i = 0; i < rounds; ++i) {
+    asm volatile("" : : "r"(memory) : "memory");
+    all_steps<kMix>(chains, a, b, memory, std::make_index_sequence<static_cast<std::size_t>(kMix.operations())>());
+  }
+  for (const V& chain : chains) need(chain);
+}
+
+void RunMix(Kernel kernel, std::int64_t rounds) {
+  switch (kernel) {
+    case Kernel::joint_bilateral:
+      return run_mix<kJointBilateralMix>(rounds);
+  }
+}
+
+void RunFma(std::int64_t rounds) {
+  V c0 = set(0.0F), c1 = c0, c2 = c0, c3 = c0, c4 = c0, c5 = c0, c6 = c0, c7 = c0, c8 = c0, c9 = c0;
+  V a = set(1.0F), b = set(1.0F);
+  may_change(a), may_change(b);
+  for (std::int64_t i = 0; i < rounds; ++i) {
+    c0 = hn::MulAdd(a, b, c0), c1 = hn::MulAdd(a, b, c1), c2 = hn::MulAdd(a, b, c2), c3 = hn::MulAdd(a, b, c3);
+    c4 = hn::MulAdd(a, b, c4), c5 = hn::MulAdd(a, b, c5), c6 = hn::MulAdd(a, b, c6), c7 = hn::MulAdd(a, b, c7);
+    c8 = hn::MulAdd(a, b, c8), c9 = hn::MulAdd(a, b, c9);
+    may_change(a), may_change(b);
+  }
+  for (const V& c : {c0, c1, c2, c3, c4, c5, c6, c7, c8, c9}) need(c);
+}
+
+// Past the caches: a kernel's output is not read again before it has left them.
+void Copy(const float* from, float* to, std::size_t count) {
+  const D d;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) hn::Stream(hn::Load(d, from + i), d, to + i);
+  hwy::FlushStream();
+}
+
+int CountLanes() { return lanes(); }
+
+}  // namespace quell::bench::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace quell::bench {
+
+HWY_EXPORT(RunMix);
+HWY_EXPORT(RunFma);
+HWY_EXPORT(Copy);
+HWY_EXPORT(CountLanes);
+
+namespace {
+
+constexpr int kRepeats = 5;
+constexpr std::int64_t kFmaRounds = 3'000'000;  // some 10 ms
+constexpr std::int64_t kMixRounds = 1'000'000;
+constexpr int kFmaChains = 10;
+
+double best_of_repeats(const std::function<double()>& seconds) {
+  double best = seconds();
+  for (int i = 1; i < kRepeats; ++i) best = std::min(best, seconds());
+  return best;
+}
+
+/// Floats of each of the two images of the copy: four times the last-level cache, at most 1 GiB.
+std::size_t copied_floats() {
+  const long cache = std::max(sysconf(_SC_LEVEL3_CACHE_SIZE), 8L << 20);
+  return static_cast<std::size_t>(std::min(4 * cache, 1L << 30)) / sizeof(float);
+}
+
+}  // namespace
+
+double time_threads(int count, const std::function<void(int)>& body) {
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start;
+  std::barrier together(count, [&]() noexcept { start = Clock::now(); });
+  {
+    std::vector<std::jthread> helpers;
+    const auto run = [&](int i) {
+      together.arrive_and_wait();
+      body(i);
+    };
+    for (int i = 1; i < count; ++i) helpers.emplace_back(run, i);
+    run(0);
+  }
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double measure_copy_bandwidth(int threads) {
+  constexpr std::size_t kAlign = 64 / sizeof(float);
+  const std::size_t share = copied_floats() / static_cast<std::size_t>(threads) / kAlign * kAlign;
+  const std::size_t count = share * static_cast<std::size_t>(threads);
+  const auto make = [&] { return std::make_unique<float[]>(count + kAlign); };
+  const auto aligned = [](float* p) { return p + (64 - reinterpret_cast<std::uintptr_t>(p) % 64) % 64 / sizeof(float); };
+  const auto from = make(), to = make();
+  const double seconds = best_of_repeats([&] {
+    return time_threads(threads, [&](int i) {
+      const std::size_t first = share * static_cast<std::size_t>(i);
+      HWY_DYNAMIC_DISPATCH(Copy)(aligned(from.get()) + first, aligned(to.get()) + first, share);
+    });
+  });
+  return 2.0 * sizeof(float) * static_cast<double>(count) / seconds;
+}
+
+double measure_peak_flops(int threads) {
+  const double seconds =
+      best_of_repeats([&] { return time_threads(threads, [](int) { HWY_DYNAMIC_DISPATCH(RunFma)
+                                                                   (kFmaRounds); }); });
+  return 2.0 * kFmaChains * vector_lanes() * static_cast<double>(kFmaRounds) * threads / seconds;
+}
+
+const Mix& mix_of(Kernel kernel) {
+  static constexpr Mix kMixes[] = {kJointBilateralMix};
+  return kMixes[static_cast<std::size_t>(kernel)];
+}
+
+double measure_issue_bound(Kernel kernel, int threads) {
+  const double seconds =
+      best_of_repeats([&] { return time_threads(threads, [&](int) { HWY_DYNAMIC_DISPATCH(RunMix)
+                                                                    (kernel, kMixRounds); }); });
+  return seconds / (static_cast<double>(kMixRounds) * vector_lanes() * threads);
+}
+
+const Ceilings& ceilings(int threads) {
+  static std::map<std::pair<std::string, int>, Ceilings> known;
+  const auto [place, is_new] = known.try_emplace({current_isa(), threads});
+  if (is_new) place->second = {measure_copy_bandwidth(threads), measure_peak_flops(threads)};
+  return place->second;
+}
+
+double issue_bound(Kernel kernel, int threads) {
+  static std::map<std::tuple<std::string, Kernel, int>, double> known;
+  const auto [place, is_new] = known.try_emplace({current_isa(), kernel, threads});
+  if (is_new) place->second = measure_issue_bound(kernel, threads);
+  return place->second;
+}
+
+int vector_lanes() { return HWY_DYNAMIC_DISPATCH(CountLanes)(); }
+
+}  // namespace quell::bench
+#endif

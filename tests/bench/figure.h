@@ -1,0 +1,35 @@
+// Figures that must be reached, each a ratio within one run, so that it holds on slow and fast machines alike.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace quell::bench {
+
+struct Figure {
+  std::string what;
+  double reached = 0;
+  double bar = 0;
+  bool at_most = false;  ///< the bar must not be exceeded
+  std::string skipped;   ///< why there is no figure; empty: there is
+  std::string note;      ///< what it is made of, for people
+
+  bool missed() const { return skipped.empty() && !(at_most ? reached <= bar : reached >= bar); }
+};
+
+/// What each part of the acceptance measures, one function a subject.
+std::vector<Figure> scheduler_figures();
+std::vector<Figure> joint_bilateral_figures();
+
+/// The seconds of several ways to do something, in their order, again and again in alternation, so that all see the same
+/// neighbors: of each the smallest, to which the machine's other work has added least.
+std::vector<double> time_alternately(int repeats, const std::vector<std::function<double()>>& ways);
+
+/// How much the largest value lies above the smallest, as a fraction.
+double spread(const std::vector<double>& values);
+
+/// Threads of the bars: two, or one where there is no more.
+int acceptance_threads();
+
+}  // namespace quell::bench

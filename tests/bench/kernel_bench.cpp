@@ -1,0 +1,40 @@
+#include "tests/bench/kernel_bench.h"
+
+#include <algorithm>
+
+#include "quell/runtime/executor.h"
+
+namespace quell::bench {
+
+std::vector<int> thread_counts() {
+  std::vector<int> counts;
+  for (int count = 1; count < available_threads(); count *= 2) counts.push_back(count);
+  counts.push_back(available_threads());
+  return counts;
+}
+
+std::string text(Size size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
+
+void report_cost(benchmark::State& state, double seconds, const Work& work) {
+  state.counters["ns/px"] = seconds * 1e9 / work.pixels;
+  state.counters["ns/tap"] = seconds * 1e9 / work.taps;
+}
+
+void measure_pass(benchmark::State& state, PassRunner& pass, const Work& work, Kernel kernel, int threads) {
+  double total = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    const double seconds = pass.run();
+    state.SetIterationTime(seconds);
+    total += seconds;
+  }
+  const double seconds = total / static_cast<double>(state.iterations());
+  const double flops = work.taps * mix_of(kernel).flops() / seconds, bytes = work.bytes / seconds;
+  report_cost(state, seconds, work);
+  state.counters["GFLOP/s"] = flops / 1e9;
+  state.counters["GB/s"] = bytes / 1e9;
+  state.counters["of_peak"] = flops / ceilings(threads).flops;
+  state.counters["of_copy"] = bytes / ceilings(threads).bytes_per_second;
+  state.counters["of_issue"] = issue_bound(kernel, threads) * work.taps / seconds;
+}
+
+}  // namespace quell::bench

@@ -1,0 +1,24 @@
+// The parts of the program kernel_bench.
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include "tests/bench/workload.h"
+
+namespace quell::bench {
+
+void add_ceiling_benchmarks();
+void add_joint_bilateral_benchmarks();
+
+/// 1, 2, 4, ... and all processors.
+std::vector<int> thread_counts();
+
+/// "512x512"
+std::string text(Size size);
+
+/// Runs the pass until Google Benchmark has enough, and reports its cost beside the ceilings.
+void measure_pass(benchmark::State& state, PassRunner& pass, const Work& work, Kernel kernel, int threads);
+/// Of references, which have no issue bound.
+void report_cost(benchmark::State& state, double seconds, const Work& work);
+
+}  // namespace quell::bench
