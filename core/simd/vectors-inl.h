@@ -52,19 +52,43 @@ HWY_INLINE V dot_add(V3 a, V3 b, V c) { return hn::MulAdd(a.z, b.z, hn::MulAdd(a
 
 // 2^-(gain e) for e >= 0; error 3.6e-6, exactly 1 at 0, exactly 0 where gain e > 126.5. `limit` is 127 / gain.
 // The fit is of 2^f on [-1/2, 1/2], the constant 1 held.
-HWY_INLINE V exp2_negative(V e, V gain, V limit) {
+HWY_INLINE V exp2_fraction(V f, V n) {
   const D d;
   const hn::RebindToUnsigned<D> du;
-  const V round = set(0x1.8p23F + 127.0F);  // the last bits of a sum with it are the rounded integer, biased as an exponent
-  e = hn::Min(e, limit);
-  const V n = hn::NegMulAdd(gain, e, round);
-  const V f = hn::NegMulAdd(gain, e, hn::Sub(round, n));
   V p = set(9.782912553e-3F);
   p = hn::MulAdd(p, f, set(5.597688363e-2F));
   p = hn::MulAdd(p, f, set(2.402071108e-1F));
   p = hn::MulAdd(p, f, set(6.931136044e-1F));
   p = hn::MulAdd(p, f, set(1.0F));
   return hn::Mul(p, hn::BitCast(d, hn::ShiftLeft<23>(hn::BitCast(du, n))));
+}
+constexpr float kRound = 0x1.8p23F + 127.0F;  // the last bits of a sum with it are the rounded integer, biased as an exponent
+HWY_INLINE V exp2_negative(V e, V gain, V limit) {
+  e = hn::Min(e, limit);
+  const V n = hn::NegMulAdd(gain, e, set(kRound));
+  return exp2_fraction(hn::NegMulAdd(gain, e, hn::Sub(set(kRound), n)), n);
+}
+// The same for a gain of 1.
+HWY_INLINE V exp2_negative(V e) {
+  e = hn::Min(e, set(127.0F));
+  const V n = hn::Sub(set(kRound), e);
+  return exp2_fraction(hn::Sub(hn::Sub(set(kRound), n), e), n);
+}
+
+// Of linear colors with BT.709 primaries.
+HWY_INLINE V luminance(V3 color) { return dot(color, {set(0.2126F), set(0.7152F), set(0.0722F)}); }
+
+HWY_INLINE V reciprocal(V x) {
+  const V r = hn::ApproximateReciprocal(x);
+  return hn::MulAdd(r, hn::NegMulAdd(r, x, set(1.0F)), r);
+}
+
+// factor -ln(1 - t)
+HWY_INLINE V minus_log_narrow(V t, V factor) {
+  V p = hn::Mul(factor, set(0.3463F));
+  p = hn::MulAdd(p, t, hn::Mul(factor, set(0.5F)));
+  p = hn::MulAdd(p, t, factor);
+  return hn::Mul(p, t);
 }
 
 // The square of the angle between two normals is taken from chord = |n - n'|^2 = 2 - 2 n.n', which does not cancel where they are
