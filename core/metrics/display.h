@@ -28,4 +28,7 @@ DisplayTransform parse_display_transform(std::string_view name, std::string_view
 /// One value, in double: the definition, which the fast version for whole images equals to within 2e-6.
 double to_display(DisplayTransform transform, double radiance);
 
+/// The light that an sRGB display makes of a display value of 0..1 (IEC 61966-2-1), 0..1: what FLIP looks at.
+double to_light(double display);
+
 }  // namespace quell

@@ -1,6 +1,11 @@
 // FLIP: how different two pictures look when a person flips between them.
 // Source: Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", HPG 2020; for radiance (HDR-FLIP) Andersson et
 //         al., "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics 2021.
+// Borders: beyond them the pixels at them go on, as in the paper's program.
+// Error:   of a pixel's parts, 1e-3 of the color distance HyAB (which goes to 308) and 4e-7 of the feature difference before its
+//          square root (which goes to 1), then 3e-6 of the result: float, against the formulas in double. Where the colors agree
+//          and features do not, the power of the two makes that more. 1.44e-7 of features are there on purpose (kFlipEdgeSum in
+//          flip_filters.h): the paper's program has them, and with them flat areas have its figures.
 #pragma once
 
 #include <array>
@@ -25,7 +30,8 @@ struct FlipImages {
 };
 
 /// The errors are 0..1; `map`, one plane of the images' size, takes each pixel's when it is there, also where it does not count.
-/// Linear sRGB light (BT.709 primaries, no transfer curve) of 0..1; what is beyond is clamped.
+/// Linear sRGB light (BT.709 primaries, no transfer curve) of 0..1; what is beyond is clamped. The same for any `parallel`, bit
+/// for bit, and with reference and image exchanged. Throws Error(usage) when pixels_per_degree is not within 1..1000.
 Score flip(const FlipImages& images, double pixels_per_degree, FloatOutput map, BufferPool& pool, const Parallel& parallel);
 
 /// The pictures that HDR-FLIP takes of radiance: exposures in stops (radiance times 2^stop), from `start` to `stop`, evenly
@@ -46,7 +52,8 @@ LuminanceRange luminance_range(FloatImage reference, BufferPool& pool, const Par
 /// for all frames, so that their errors are comparable. Throws nothing; a black sequence has exposures from 0 to 0.
 Exposures choose_exposures(std::span<const LuminanceRange> frames);
 
-/// Radiance: the errors of each pixel are the largest over the exposures, each tone mapped by the ACES curve.
+/// Radiance, of which negative values count as 0: the errors of each pixel are the largest over the exposures, each tone mapped
+/// by the ACES curve. Otherwise as flip(). Throws Error(usage) when there is no exposure, too.
 Score hdr_flip(const FlipImages& images, const Exposures& exposures, double pixels_per_degree, FloatOutput map, BufferPool& pool,
                const Parallel& parallel);
 

@@ -11,7 +11,7 @@ namespace quell {
 
 enum class Metric {
   psnr,      ///< of display values, dB
-  ssim,      ///< of display values
+  ssim,      ///< of display values; cannot be told of an image with a side below 11 pixels
   mse,       ///< of display values
   relmse,    ///< of radiance
   smape,     ///< of radiance

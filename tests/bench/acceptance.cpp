@@ -37,6 +37,7 @@ int run() {
   std::printf("%d processors; vector units %s\n", available_threads(), list_names(isas(), "and").c_str());
   bool all = measure("scheduler", scheduler_figures);
   all = measure("joint_bilateral", joint_bilateral_figures) && all;
+  all = measure("flip", flip_figures) && all;
   return all ? 0 : 1;
 }
 

@@ -21,6 +21,7 @@ struct Figure {
 /// What each part of the acceptance measures, one function a subject.
 std::vector<Figure> scheduler_figures();
 std::vector<Figure> joint_bilateral_figures();
+std::vector<Figure> flip_figures();
 
 /// The seconds of several ways to do something, in their order, again and again in alternation, so that all see the same
 /// neighbors: of each the smallest, to which the machine's other work has added least.
