@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <limits>
+#include <sstream>
 
 #include "quell/text/diagnostic.h"
 
@@ -118,6 +120,16 @@ int parse_count(const std::string& text, const char* option, int smallest, int l
         Fault::usage, option,
         "'" + text + "' is not a whole number from " + std::to_string(smallest) + " to " + std::to_string(largest) + or_else);
   return value;
+}
+
+double parse_number(const std::string& text, const char* option, double smallest, double largest) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc() && end == text.data() + text.size() && value >= smallest && value <= largest) return value;
+  if (largest == std::numeric_limits<double>::max()) throw Error(Fault::usage, option, "'" + text + "' is not a number");
+  std::ostringstream range;
+  range << smallest << " to " << largest;
+  throw Error(Fault::usage, option, "'" + text + "' is not a number from " + range.str());
 }
 
 std::size_t parse_choice(const std::string& text, const char* option, const std::vector<std::string>& choices) {

@@ -45,6 +45,7 @@ struct SequenceArguments {
 inline constexpr const char* kInputGroup = "What to read";
 inline constexpr const char* kOutputGroup = "What to write";
 inline constexpr const char* kGraphGroup = "The graph";
+inline constexpr const char* kMeasureGroup = "What to measure";
 inline constexpr const char* kScheduleGroup = "How to run";
 inline constexpr const char* kOtherGroup = "Other options";
 
@@ -63,6 +64,8 @@ SequenceOptions sequence_options(const SequenceArguments& arguments);
 
 /// A whole number of at least `smallest`. Throws Error(usage) naming the option; `or_else` ends the message.
 int parse_count(const std::string& text, const char* option, int smallest, int largest, const char* or_else = "");
+/// A number from `smallest` to `largest`. Throws Error(usage) naming the option.
+double parse_number(const std::string& text, const char* option, double smallest, double largest);
 /// The place of `text` among the choices. Throws Error(usage) naming the option.
 std::size_t parse_choice(const std::string& text, const char* option, const std::vector<std::string>& choices);
 

@@ -19,6 +19,7 @@
 #include "results.h"
 #include "run_log.h"
 #include "run_options.h"
+#include "run_reference.h"
 #include "run_summary.h"
 #include "trace_file.h"
 #include "variants.h"
@@ -34,6 +35,7 @@ struct Arguments {
   IsaArguments isa;
   VerbosityArguments verbosity;
   OutputArguments output;
+  ReferenceArguments reference;
   std::vector<std::string> dumps;
   std::optional<std::filesystem::path> log_json, trace;
   bool dry_run = false, watch = false;
@@ -74,6 +76,7 @@ ExitCode exit_code_of(Ending ending) {
 struct Preparation {
   Job job;
   std::unique_ptr<FileSink> sink;
+  std::unique_ptr<MeasuringSink> measuring;  ///< in front of `sink`; null without --reference
   std::vector<ResultFiles> results;
   std::map<std::string, std::string> labels;  ///< of the results, as label_results() has them
   SessionOptions options;
@@ -93,6 +96,14 @@ struct Watch {
   std::optional<Preparation> last;  ///< of the last run
 };
 
+/// Of a frame that is told in its turn.
+std::vector<MeasuredOutput> take_measured(MeasuringSink* measuring, const FrameReport& report) {
+  if (!measuring) return {};
+  if (report.ok) return measuring->take(report.frame);
+  measuring->forget(report.frame);
+  return {};
+}
+
 /// With `watch`, computes what has changed since its last run.
 ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log, Console& console, Watch* watch) {
   Job& job = run.job;
@@ -108,14 +119,17 @@ ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log,
   Progress progress(console, job.frames.size());
   options.on_frame = [&](const FrameReport& report) {
     const BufferPool::Usage usage = watch ? watch->rerun.usage() : session->pool().usage();
-    progress.frame_done(report, usage.in_use + usage.idle);
-    log.frame(report, job.plan, usage);
+    const std::vector<MeasuredOutput> measured = take_measured(run.measuring.get(), report);
+    const std::vector<Metric> metrics = run.measuring ? run.measuring->options().compare.metrics : std::vector<Metric>();
+    progress.frame_done(report, usage.in_use + usage.idle, list_measured(measured, metrics));
+    log.frame(report, job.plan, usage, measured, metrics);
   };
+  FrameSink& sink = run.measuring ? static_cast<FrameSink&>(*run.measuring) : *run.sink;
   RerunReport rerun;
   if (watch) {
-    rerun = watch->rerun.run(job.graph, job.frames, *job.sequence, *run.sink, options, run.labels);
+    rerun = watch->rerun.run(job.graph, job.frames, *job.sequence, sink, options, run.labels);
   } else {
-    rerun.frames = session.emplace(job.graph, options).run(job.frames, *job.sequence, *run.sink);
+    rerun.frames = session.emplace(job.graph, options).run(job.frames, *job.sequence, sink);
     rerun.peak_bytes = session->pool().usage().peak;
   }
   const std::vector<FrameReport>& reports = rerun.frames;
@@ -127,12 +141,28 @@ ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log,
   const std::vector<ResultFiles> written = watch ? select_results(run.results, rerun) : run.results;
   FrameSets frames = is_all_kept ? FrameSets{job.frames, {}, {}} : sort_frames(job.frames, reports);
   const Ending ending = ending_of(frames, options.stop_on_error);
-  const RunOutcome outcome = {
-      job, written, reports, std::move(frames), ending, run.sink->clamped_pixels(), progress.seconds(), rerun.peak_bytes};
+  const RunOutcome outcome = {job,
+                              written,
+                              reports,
+                              std::move(frames),
+                              ending,
+                              run.sink->clamped_pixels(),
+                              progress.seconds(),
+                              rerun.peak_bytes,
+                              run.measuring.get()};
   if (!is_all_kept) tell_outcome(outcome);
   const ExitCode code = finish_trace(trace, exit_code_of(ending));
   log.end(outcome, code);
   return code;
+}
+
+/// Null without --reference.
+std::unique_ptr<MeasuringSink> make_measuring_sink(const Arguments& arguments, const Job& job,
+                                                   const std::vector<ResultFiles>& results, int threads, FrameSink& sink) {
+  std::optional<MeasuringOptions> options = prepare_measuring(arguments.reference, arguments.sequence, job, results);
+  if (!options) return nullptr;
+  if (!arguments.dry_run) complete_measuring(*options, threads);
+  return std::make_unique<MeasuringSink>(sink, std::move(*options));
 }
 
 Preparation prepare(const Arguments& arguments, Watch* watch) {
@@ -151,7 +181,8 @@ Preparation prepare(const Arguments& arguments, Watch* watch) {
   refuse_to_replace_inputs(job, results);
   if (output.keep_channels) tell_kept_channels(*sink, job);
   std::map<std::string, std::string> labels = label_results(output, job);
-  return {std::move(job), std::move(sink), std::move(results), std::move(labels), std::move(options)};
+  std::unique_ptr<MeasuringSink> measuring = make_measuring_sink(arguments, job, results, options.threads, *sink);
+  return {std::move(job), std::move(sink), std::move(measuring), std::move(results), std::move(labels), std::move(options)};
 }
 
 ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, Watch* watch = nullptr) {
@@ -160,7 +191,7 @@ ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, W
   const int threads = options.threads > 0 ? options.threads : available_threads();
   const Window window = choose_window(run.job.plan, threads, options.frames_in_flight, options.memory);
   if (arguments.dry_run) {
-    std::cout << describe_dry_run(run.job, run.results);
+    std::cout << describe_dry_run(run.job, run.results, run.measuring ? describe(run.measuring->options()) : "");
     return kOk;
   }
   spdlog::debug("up to {} frames at a time ({}), and {} of images", window.frames, window.reason, format_bytes(window.memory));
@@ -243,6 +274,7 @@ Command add_run(CLI::App& program) {
   auto arguments = std::make_shared<Arguments>();
   add_options(app, arguments->graph);
   add_options(app, arguments->sequence);
+  add_options(app, arguments->reference);
   add_output_options(app, *arguments);
   add_options(app, arguments->schedule);
   add_options(app, arguments->isa);

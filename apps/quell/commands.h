@@ -19,6 +19,7 @@ struct Command {
 
 Command add_run(CLI::App& program);
 Command add_check(CLI::App& program);
+Command add_compare(CLI::App& program);
 Command add_graph(CLI::App& program);
 Command add_inspect(CLI::App& program);
 Command add_passes(CLI::App& program);

@@ -15,7 +15,8 @@ class HelpFormatter final : public CLI::FormatterBase {
     std::string text = wrap(app->get_description());
     text += "\nUsage: " + usage(*app, name) + "\n";
     text += positionals(*app) + commands(*app);
-    for (const char* group : {kInputGroup, kOutputGroup, kGraphGroup, kScheduleGroup, kOtherGroup}) text += options(*app, group);
+    for (const char* group : {kInputGroup, kMeasureGroup, kOutputGroup, kGraphGroup, kScheduleGroup, kOtherGroup})
+      text += options(*app, group);
     if (!app->get_footer().empty()) text += "\n" + wrap_footer(app->get_footer());
     return text;
   }

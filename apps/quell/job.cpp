@@ -4,12 +4,11 @@
 #include <optional>
 
 #include "graph_files.h"
+#include "missing_files.h"
 #include "quell/text/diagnostic.h"
 
 namespace quell::app {
 namespace {
-
-constexpr std::size_t kMostListed = 10;
 
 std::vector<std::string> names_of_inputs(const Graph& graph) {
   std::vector<std::string> names;
@@ -89,17 +88,6 @@ std::vector<InputFiles> select_inputs(const Plan& plan, const std::vector<InputF
   return selected;
 }
 
-std::string list_missing(const std::vector<MissingFile>& missing) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(missing.size(), kMostListed); ++i)
-    text += "\n  frame " + std::to_string(missing[i].frame) + ", " + missing[i].input + ": " + missing[i].file.string();
-  if (missing.size() >= Sequence::kMostMissing)
-    text += "\n  and many more";
-  else if (missing.size() > kMostListed)
-    text += "\n  and " + std::to_string(missing.size() - kMostListed) + " more";
-  return text;
-}
-
 std::vector<std::int64_t> choose_frames(const Sequence& sequence, const std::vector<InputFiles>& inputs,
                                         const std::string& place) {
   std::vector<std::string> names;
@@ -113,14 +101,7 @@ std::vector<std::int64_t> choose_frames(const Sequence& sequence, const std::vec
     throw Error(Fault::input, place,
                 "there is no frame for which every input exists" +
                     (missing.empty() ? std::string() : "; missing are:" + list_missing(missing)));
-  if (!missing.empty()) {
-    std::vector<std::int64_t> dropped;
-    for (const MissingFile& file : missing) dropped.push_back(file.frame);
-    const FrameRange range(std::move(dropped));
-    const bool one = range.frames().size() == 1;
-    spdlog::warn("{} {} left out, because files are missing:{}", one ? "frame" : "frames", range.text() + (one ? " is" : " are"),
-                 list_missing(missing));
-  }
+  warn_of_missing(missing);
   return frames;
 }
 

@@ -75,14 +75,14 @@ Progress::~Progress() { console_.set_status(""); }
 
 double Progress::seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
-void Progress::frame_done(const FrameReport& report, std::size_t bytes) {
+void Progress::frame_done(const FrameReport& report, std::size_t bytes, const std::string& figures) {
   ++state_.done;
   state_.frame = report.frame;
   state_.bytes = bytes;
   if (!report.ok)
     spdlog::error("frame {} ({} of {}) failed: {}", report.frame, state_.done, state_.total, report.error);
-  else if (!console_.is_terminal())
-    spdlog::info(plain_line(report.frame, state_.done, state_.total, report.seconds));
+  else if (!console_.is_terminal() || !figures.empty())
+    spdlog::info(plain_line(report.frame, state_.done, state_.total, report.seconds) + figures);
   draw();
 }
 

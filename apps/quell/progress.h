@@ -40,8 +40,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Tells the frame's result; a failed one by its reason, in every verbosity.
-  void frame_done(const FrameReport& report, std::size_t bytes);
+  /// Tells the frame's result; a failed one by its reason, in every verbosity. Figures of a frame stand behind it, on a terminal,
+  /// too, where its line is left out otherwise.
+  void frame_done(const FrameReport& report, std::size_t bytes, const std::string& figures = "");
   double seconds() const;
 
  private:

@@ -87,17 +87,17 @@ void refuse_to_replace_others(const fs::path& file, std::string_view beginning, 
     throw Error(Fault::usage, option, file.string() + " is there, and was not written by this option; choose another name");
 }
 
-void prepare_folder(const fs::path& folder) {
+void prepare_folder(const fs::path& folder, const char* option) {
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_directory(folder, error))
-    throw Error(Fault::usage, "--out", folder.string() + " is a file; name a folder for the results");
+    throw Error(Fault::usage, option, folder.string() + " is a file; name a folder for the results");
   fs::create_directories(folder, error);
-  if (error) throw Error(Fault::usage, "--out", "the folder " + folder.string() + " cannot be made: " + error.message());
+  if (error) throw Error(Fault::usage, option, "the folder " + folder.string() + " cannot be made: " + error.message());
   if (access(folder.c_str(), W_OK | X_OK) != 0)
-    throw Error(Fault::usage, "--out", "nothing can be written to " + folder.string() + ": " + std::strerror(errno));
+    throw Error(Fault::usage, option, "nothing can be written to " + folder.string() + ": " + std::strerror(errno));
 }
 
-std::string describe_dry_run(const Job& job, const std::vector<ResultFiles>& results) {
+std::string describe_dry_run(const Job& job, const std::vector<ResultFiles>& results, const std::string& more) {
   std::size_t width = 0;
   for (const InputFiles& input : job.inputs) width = std::max(width, input.input.size());
   std::string text = "would read, for frames " + FrameRange(job.frames).text() + ":\n";
@@ -113,7 +113,7 @@ std::string describe_dry_run(const Job& job, const std::vector<ResultFiles>& res
     }
   }
   if (replaced > 0) text += "  " + std::to_string(replaced) + " of these files exist and would be replaced\n";
-  return text + "dry run: nothing was computed or written\n";
+  return text + more + "dry run: nothing was computed or written\n";
 }
 
 }  // namespace quell::app

@@ -29,10 +29,10 @@ void refuse_to_replace_inputs(const Job& job, const std::vector<ResultFiles>& re
 /// wrote.
 void refuse_to_replace_others(const std::filesystem::path& file, std::string_view beginning, const char* option);
 
-/// Makes the folder. Throws Error(usage) when that fails, or when nothing can be written there.
-void prepare_folder(const std::filesystem::path& folder);
+/// Makes the folder. Throws Error(usage) naming the option when that fails, or when nothing can be written there.
+void prepare_folder(const std::filesystem::path& folder, const char* option = "--out");
 
-/// What would be read, run and written.
-std::string describe_dry_run(const Job& job, const std::vector<ResultFiles>& results);
+/// What would be read, run and written; `more` is a line about something else.
+std::string describe_dry_run(const Job& job, const std::vector<ResultFiles>& results, const std::string& more = "");
 
 }  // namespace quell::app

@@ -39,6 +39,18 @@ void write_message(JsonLines& lines, std::string_view level, std::string_view te
   lines.write("message", JsonObject().text("level", level).text("text", text));
 }
 
+/// By output, by metric.
+JsonObject figures(const std::vector<MeasuredOutput>& measured, const std::vector<Metric>& metrics) {
+  JsonObject outputs;
+  for (const MeasuredOutput& output : measured) {
+    JsonObject values;
+    for (std::size_t i = 0; i < metrics.size(); ++i)
+      values.value(info(metrics[i]).name, quell::value(metrics[i], output.scores[i]));
+    outputs.object(output.output, values.number("nonfinite", output.bad_pixels));
+  }
+  return outputs;
+}
+
 class MessageSink final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   explicit MessageSink(JsonLines& lines) : lines_(lines) { set_level(spdlog::level::warn); }
@@ -97,7 +109,8 @@ void RunLog::start(const Job& job, const std::vector<ResultFiles>& results, cons
                                    .text("on_error", options.stop_on_error ? "stop" : "continue"));
 }
 
-void RunLog::frame(const FrameReport& report, const Plan& plan, const BufferPool::Usage& usage) {
+void RunLog::frame(const FrameReport& report, const Plan& plan, const BufferPool::Usage& usage,
+                   const std::vector<MeasuredOutput>& measured, const std::vector<Metric>& metrics) {
   if (!state_) return;
   JsonObject nodes;
   if (report.node_seconds.size() == plan.nodes.size())
@@ -115,6 +128,7 @@ void RunLog::frame(const FrameReport& report, const Plan& plan, const BufferPool
       .object("node_seconds", nodes)
       .objects("replaced", replaced)
       .object("memory", JsonObject().number("in_use", usage.in_use).number("idle", usage.idle).number("peak", usage.peak));
+  if (!measured.empty()) line.object("figures", figures(measured, metrics));
   state_->lines.write("frame", line);
 }
 
@@ -124,14 +138,17 @@ void RunLog::message(int level, std::string_view text) {
 
 void RunLog::end(const RunOutcome& outcome, ExitCode code) {
   if (!state_) return;
-  state_->lines.write("end", JsonObject()
-                                 .text("outcome", name_of(outcome.ending))
-                                 .text("done", range(outcome.frames.done))
-                                 .text("failed", range(outcome.frames.failed))
-                                 .text("not_computed", range(outcome.frames.not_computed))
-                                 .seconds("seconds", outcome.seconds)
-                                 .number("peak_bytes", outcome.peak_bytes)
-                                 .number("exit_code", static_cast<int>(code)));
+  JsonObject line;
+  line.text("outcome", name_of(outcome.ending))
+      .text("done", range(outcome.frames.done))
+      .text("failed", range(outcome.frames.failed))
+      .text("not_computed", range(outcome.frames.not_computed))
+      .seconds("seconds", outcome.seconds)
+      .number("peak_bytes", outcome.peak_bytes);
+  if (outcome.measuring)
+    line.object("figures", figures(outcome.measuring->totals(), outcome.measuring->options().compare.metrics));
+  line.number("exit_code", static_cast<int>(code));
+  state_->lines.write("end", line);
 }
 
 void RunLog::end(std::string_view error, ExitCode code) {

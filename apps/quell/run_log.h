@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "exit_code.h"
+#include "measuring_sink.h"
 #include "quell/runtime/window.h"
 #include "run_summary.h"
 
@@ -23,7 +24,9 @@ class RunLog {
   RunLog& operator=(const RunLog&) = delete;
 
   void start(const Job& job, const std::vector<ResultFiles>& results, const SessionOptions& options, const Window& window);
-  void frame(const FrameReport& report, const Plan& plan, const BufferPool::Usage& usage);
+  /// `measured` of its outputs, in these metrics.
+  void frame(const FrameReport& report, const Plan& plan, const BufferPool::Usage& usage,
+             const std::vector<MeasuredOutput>& measured = {}, const std::vector<Metric>& metrics = {});
   void message(int level, std::string_view text);  ///< levels QUELL_LOG_*
   void end(const RunOutcome& outcome, ExitCode code);
   /// The end of a run that could not start, or not go on.

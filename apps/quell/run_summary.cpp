@@ -5,6 +5,7 @@
 #include "console.h"
 #include "node_times.h"
 #include "progress.h"
+#include "run_reference.h"
 
 namespace quell::app {
 namespace {
@@ -82,6 +83,7 @@ void tell_outcome(const RunOutcome& outcome) {
                outcome.job.frames.size(), format_duration(outcome.seconds), format_rate(rate), format_bytes(outcome.peak_bytes));
   if (!outcome.frames.done.empty())
     for (const ResultFiles& series : outcome.results) spdlog::info("  {}  {}", series.pattern, frames_text(outcome.frames.done));
+  if (outcome.measuring) tell_measured(*outcome.measuring);
   if (const std::string table = time_table(outcome.job.plan, outcome.reports, outcome.seconds); !table.empty())
     spdlog::info(table);
   tell_failures(outcome.reports);

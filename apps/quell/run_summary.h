@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "job.h"
+#include "measuring_sink.h"
 #include "quell/runtime/session.h"
 #include "results.h"
 
@@ -38,6 +39,7 @@ struct RunOutcome {
   std::uint64_t clamped_pixels = 0;
   double seconds = 0;
   std::size_t peak_bytes = 0;
+  const MeasuringSink* measuring = nullptr;  ///< with --reference
 };
 
 /// Tells all that through the log: info, warnings, errors. Why frames were not computed comes last.

@@ -1,14 +1,15 @@
 #include "text_layout.h"
 
 namespace quell::app {
-namespace {
 
-/// Characters, not bytes: UTF-8's continuation bytes take no column.
-std::size_t width(std::string_view text) {
+// UTF-8's continuation bytes take no column.
+std::size_t columns_of(std::string_view text) {
   std::size_t columns = 0;
   for (const char c : text) columns += (static_cast<unsigned char>(c) & 0xc0u) == 0x80u ? 0 : 1;
   return columns;
 }
+
+namespace {
 
 void wrap_line(std::string_view line, std::size_t indent, std::string& out) {
   const std::string margin(indent, ' ');
@@ -18,9 +19,9 @@ void wrap_line(std::string_view line, std::size_t indent, std::string& out) {
     if (line.empty()) break;
     const std::string_view word = line.substr(0, line.find(' '));
     line.remove_prefix(word.size());
-    if (column > 0 && column + 1 + width(word) > kColumns) out += '\n', column = 0;
+    if (column > 0 && column + 1 + columns_of(word) > kColumns) out += '\n', column = 0;
     out += column == 0 ? margin : " ";
-    column += (column == 0 ? indent : 1) + width(word);
+    column += (column == 0 ? indent : 1) + columns_of(word);
     out += word;
   }
   out += '\n';
@@ -42,8 +43,8 @@ std::string entry(std::string_view left, std::string_view right, std::size_t ind
   std::string head = std::string(indent, ' ').append(left);
   std::string body = wrap(right, column);
   if (body.empty()) return head + "\n";
-  if (width(head) + 2 > column) return head + "\n" + body;
-  return head + body.substr(width(head));
+  if (columns_of(head) + 2 > column) return head + "\n" + body;
+  return head + body.substr(columns_of(head));
 }
 
 }  // namespace quell::app

@@ -12,7 +12,8 @@
 
 namespace quell::app {
 
-void write_output(const std::string& text, const std::optional<std::string>& out, std::string_view beginning) {
+void write_output(const std::string& text, const std::optional<std::string>& out, std::string_view beginning,
+                  const char* option) {
   if (!out) {
     std::cout << text;
     return;
@@ -20,13 +21,13 @@ void write_output(const std::string& text, const std::optional<std::string>& out
   const std::filesystem::path file = *out;
   std::error_code error;
   if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
-    throw Error(Fault::usage, "--out", file.string() + " is not a file; choose another name");
-  refuse_to_replace_others(file, beginning, "--out");
+    throw Error(Fault::usage, option, file.string() + " is not a file; choose another name");
+  refuse_to_replace_others(file, beginning, option);
   PendingFile pending(file);
   std::ofstream stream(pending.path(), std::ios::binary);
   stream << text;
   stream.close();
-  if (!stream) throw Error(Fault::usage, "--out", file.string() + " cannot be written: " + std::strerror(errno));
+  if (!stream) throw Error(Fault::usage, option, file.string() + " cannot be written: " + std::strerror(errno));
   pending.commit();
 }
 

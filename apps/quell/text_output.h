@@ -7,8 +7,9 @@
 
 namespace quell::app {
 
-/// Prints the text, or writes it to the file that --out names. Throws Error(usage) naming --out when the file cannot be written,
-/// or when something stands there that does not begin so: it was not written by the same command.
-void write_output(const std::string& text, const std::optional<std::string>& out, std::string_view beginning);
+/// Prints the text, or writes it to the file that --out names. Throws Error(usage) naming the option when the file cannot be
+/// written, or when something stands there that does not begin so: it was not written by the same command.
+void write_output(const std::string& text, const std::optional<std::string>& out, std::string_view beginning,
+                  const char* option = "--out");
 
 }  // namespace quell::app

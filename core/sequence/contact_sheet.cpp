@@ -9,6 +9,7 @@
 #include "quell/sequence/image_writer.h"
 #include "quell/sequence/oiio.h"
 #include "quell/sequence/pending_file.h"
+#include "quell/text/error.h"
 
 namespace quell {
 namespace {
@@ -25,6 +26,34 @@ std::string find_font() {
     static_cast<void>(trial.geterror());  // what is not asked for is printed
   }
   return "";
+}
+
+/// An image that write_png() turns into the same bytes.
+Image image_of_bytes(const std::uint8_t* bytes, int width, int height) {
+  std::array<float, 256> linear{};
+  for (std::size_t i = 0; i < linear.size(); ++i) {
+    const double v = static_cast<double>(i) / 255;
+    linear[i] = static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+  }
+  BufferPool pool;
+  Image image(QUELL_TYPE_COLOR, {width, height}, pool);
+  const FloatOutput out = image.writable_floats();
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < 3; ++c) out.at(x, y, c) = linear[*bytes++];
+  return image;
+}
+
+void write_image(const Image& image, const std::filesystem::path& file) {
+  PendingFile pending(file);
+  try {
+    write_png({.layers = {{image, ""}}}, {}, pending.path());
+  } catch (const Error& error) {
+    if (error.where() != pending.path().string()) throw;
+    // Speak of the name that the user knows.
+    throw Error(error.fault(), file.string(), std::string(error.what()).substr(error.where().size() + 2));
+  }
+  pending.commit();
 }
 
 class Sheet {
@@ -60,23 +89,9 @@ class Sheet {
     static_cast<void>(buffer_.geterror());
   }
 
-  /// As an image that write_png() turns into the same bytes.
   Image image() const {
-    std::array<float, 256> linear{};
-    for (std::size_t i = 0; i < linear.size(); ++i) {
-      const double v = static_cast<double>(i) / 255;
-      linear[i] = static_cast<float>(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
-    }
     const auto* const bytes = static_cast<const std::uint8_t*>(buffer_.localpixels());
-    const int width = buffer_.spec().width, height = buffer_.spec().height;
-    BufferPool pool;
-    Image image(QUELL_TYPE_COLOR, {width, height}, pool);
-    const FloatOutput out = image.writable_floats();
-    std::size_t at = 0;
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x)
-        for (int c = 0; c < 3; ++c) out.at(x, y, c) = linear[bytes[at++]];
-    return image;
+    return image_of_bytes(bytes, buffer_.spec().width, buffer_.spec().height);
   }
 
  private:
@@ -112,6 +127,12 @@ void draw_panel(Sheet& sheet, const Panel& panel, int x, int y) {
 
 }  // namespace
 
+void write_raster(const std::filesystem::path& file, const Raster& raster) {
+  prepare_oiio();
+  static_assert(sizeof(Rgb) == 3, "pixels follow each other without gaps");
+  write_image(image_of_bytes(raster.pixels.front().data(), raster.width, raster.height), file);
+}
+
 bool write_contact_sheet(const std::filesystem::path& file, const std::string& heading, const std::vector<Panel>& panels,
                          int columns) {
   prepare_oiio();
@@ -124,9 +145,7 @@ bool write_contact_sheet(const std::filesystem::path& file, const std::string& h
   for (int i = 0; i < static_cast<int>(panels.size()); ++i)
     draw_panel(sheet, panels[static_cast<std::size_t>(i)], kMargin + i % columns * cell_width,
                kHeading + i / columns * cell_height);
-  PendingFile pending(file);
-  write_png({.layers = {{sheet.image(), ""}}}, {}, pending.path());
-  pending.commit();
+  write_image(sheet.image(), file);
   return sheet.has_font();
 }
 

@@ -34,6 +34,9 @@ struct Panel {
   std::string scale_begin = {}, scale_end = {};
 };
 
+/// Writes a raster as a PNG of the same bytes. The file appears under its name only when it is complete. Throws Error(frame).
+void write_raster(const std::filesystem::path& file, const Raster& raster);
+
 /// Writes the panels, in rows of `columns`, under a heading. False when no font was found, so that nothing is labeled. The file
 /// appears under its name only when it is complete. Throws Error(frame) when it cannot be written.
 bool write_contact_sheet(const std::filesystem::path& file, const std::string& heading, const std::vector<Panel>& panels,

@@ -1,0 +1,174 @@
+#include "comparison_pictures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "figure_text.h"
+#include "metric_options.h"
+#include "quell/sequence/contact_sheet.h"
+#include "quell/sequence/file_pattern.h"
+#include "quell/text/error.h"
+#include "results.h"
+
+namespace quell::app {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kLargest = 640, kSmallest = 400;  // width of a panel
+constexpr Rgb kNotFinite{255, 0, 255};
+constexpr Rgb kNothing{24, 24, 26};
+
+using Files = std::set<fs::path>;
+
+fs::path full(const fs::path& path) {
+  std::error_code error;
+  const fs::path found = fs::weakly_canonical(path, error);
+  return error ? fs::absolute(path, error) : found;
+}
+
+Files files_of(const ComparisonJob& job) {
+  Files files;
+  const auto add = [&](const ImageSeries& series) {
+    for (const std::int64_t frame : job.frames) files.insert(full(series.file(frame)));
+  };
+  add(job.reference);
+  for (const ImageSeries& image : job.images) add(image);
+  if (job.motion) add(*job.motion);
+  return files;
+}
+
+[[noreturn]] void refuse(const fs::path& file, const char* option) {
+  throw Error(Fault::usage, option, "would replace " + file.string() + ", which is compared; choose another name");
+}
+
+/// Where `at` of a panel's pixels begins in the image.
+int scaled(int at, int image, int panel) { return static_cast<int>(std::int64_t{at} * image / panel); }
+
+Size panel_size(Size image) {
+  double scale = 1;
+  if (image.width > kLargest) scale = static_cast<double>(kLargest) / image.width;
+  if (image.width < kSmallest) scale = std::ceil(static_cast<double>(kSmallest) / image.width);
+  return {std::max(1, static_cast<int>(image.width * scale)),
+          std::clamp(static_cast<int>(image.height * scale), 1, 4 * kLargest)};
+}
+
+/// A pixel of the panel is the mean of those that it covers, by `value(x, y, channel)`.
+template <class Value, class Paint>
+Raster paint(Size image, int channels, const Value& value, const Paint& color) {
+  const Size size = panel_size(image);
+  Raster raster(size.width, size.height);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const int left = scaled(x, image.width, size.width), right = std::max(left + 1, scaled(x + 1, image.width, size.width));
+      const int top = scaled(y, image.height, size.height), low = std::max(top + 1, scaled(y + 1, image.height, size.height));
+      std::array<double, 3> mean{};
+      for (int row = top; row < low; ++row)
+        for (int column = left; column < right; ++column)
+          for (int c = 0; c < channels; ++c) mean[static_cast<std::size_t>(c)] += value(column, row, c);
+      for (double& sum : mean) sum /= static_cast<double>(right - left) * (low - top);
+      raster.at(x, y) = color(mean);
+    }
+  return raster;
+}
+
+Raster show(const Image& image, DisplayTransform transform) {
+  const FloatImage pixels = image.floats();
+  return paint(
+      image.size(), 3, [&](int x, int y, int c) { return to_display(transform, pixels.at(x, y, c)); },
+      [](const std::array<double, 3>& mean) {
+        Rgb color;
+        for (std::size_t c = 0; c < 3; ++c) {
+          if (!std::isfinite(mean[c])) return kNotFinite;
+          color[c] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(mean[c], 0.0, 1.0)));
+        }
+        return color;
+      });
+}
+
+Raster show_errors(const Image& map) {
+  const FloatImage errors = map.floats();
+  return paint(
+      map.size(), 1, [&](int x, int y, int) { return static_cast<double>(errors.at(x, y)); },
+      [](const std::array<double, 3>& mean) { return flip_color(mean[0]); });
+}
+
+}  // namespace
+
+void refuse_to_replace_images(const fs::path& file, const ComparisonJob& job, const char* option) {
+  if (files_of(job).contains(full(file))) refuse(file, option);
+}
+
+ErrorMaps::ErrorMaps(const fs::path& folder, const ComparisonJob& job)
+    : folder_(folder), job_(job), padding_(job.reference.sequence()->padding()) {
+  prepare_folder(folder, "--maps");
+  const Files files = files_of(job);
+  for (const std::int64_t frame : job.frames)
+    for (std::size_t i = 0; i < job.images.size(); ++i)
+      for (const char* metric : {"flip", "hdrflip"})
+        if (files.contains(full(file(i, metric, frame)))) refuse(file(i, metric, frame), "--maps");
+}
+
+fs::path ErrorMaps::file(std::size_t image, const char* metric, std::int64_t frame) const {
+  return folder_ / (job_.labels[image] + "." + metric + "." + padded(frame, padding_) + ".png");
+}
+
+void ErrorMaps::write(const FramePictures& pictures, Executor& executor) const {
+  const auto write_one = [&](const Image& map, const fs::path& to) {
+    if (!map) return;
+    const FloatImage errors = map.floats();
+    Raster raster(map.width(), map.height());
+    for (int y = 0; y < map.height(); ++y)
+      for (int x = 0; x < map.width(); ++x) raster.at(x, y) = flip_color(errors.at(x, y));
+    write_raster(to, raster);
+  };
+  run_on(executor)(static_cast<int>(2 * job_.images.size()), [&](int i) {
+    const auto image = static_cast<std::size_t>(i / 2);
+    if (i % 2 == 0)
+      write_one(pictures.flip_maps[image], file(image, "flip", pictures.frame));
+    else
+      write_one(pictures.hdr_flip_maps[image], file(image, "hdrflip", pictures.frame));
+  });
+}
+
+void WorstFrame::look_at(const ComparedFrame& frame, const FramePictures& pictures) {
+  const std::vector<Metric>& metrics = job_.options.metrics;
+  const Metric metric = contains(metrics, Metric::flip) ? Metric::flip : Metric::hdr_flip;
+  const auto place = static_cast<std::size_t>(std::ranges::find(metrics, metric) - metrics.begin());
+  double error = 0;
+  for (const ImageFigures& image : frame.images)
+    if (const double figure = value(metric, image.scores[place]); figure > error) error = figure;
+  if (error <= error_) return;
+  error_ = error, frame_ = frame, pictures_ = pictures;
+}
+
+std::string WorstFrame::figures(std::size_t image, bool first_half) const {
+  const std::vector<Metric>& metrics = job_.options.metrics;
+  const std::vector<Score>& scores = frame_.images[image].scores;
+  const auto half = static_cast<std::ptrdiff_t>((metrics.size() + 1) / 2);
+  if (first_half) return list_figures({metrics.begin(), metrics.begin() + half}, {scores.begin(), scores.begin() + half});
+  return list_figures({metrics.begin() + half, metrics.end()}, {scores.begin() + half, scores.end()});
+}
+
+std::optional<bool> WorstFrame::draw(const fs::path& file) const {
+  if (!pictures_.reference) return std::nullopt;
+  const bool is_hdr = !contains(job_.options.metrics, Metric::flip);
+  std::vector<Panel> panels = {{"reference", "display values by " + describe(info(job_.options.display)),
+                                show(pictures_.reference, job_.options.display)}};
+  for (std::size_t i = 0; i < job_.images.size(); ++i)
+    panels.push_back({job_.labels[i], figures(i, true), show(pictures_.images[i], job_.options.display)});
+  const Raster& first = panels.front().picture;
+  Panel scale{is_hdr ? "errors by HDR-FLIP" : "errors by FLIP", "", Raster(first.width, first.height, kNothing)};
+  for (int i = 0; i < 256; ++i) scale.scale.push_back(flip_color(i / 255.0));
+  scale.scale_begin = "0", scale.scale_end = "1";
+  panels.push_back(std::move(scale));
+  for (std::size_t i = 0; i < job_.images.size(); ++i)
+    panels.push_back(
+        {job_.labels[i], figures(i, false), show_errors((is_hdr ? pictures_.hdr_flip_maps : pictures_.flip_maps)[i])});
+  const std::string heading = "Frame " + std::to_string(frame_.frame) + ", the one with the largest error";
+  return write_contact_sheet(file, heading, panels, static_cast<int>(job_.images.size()) + 1);
+}
+
+}  // namespace quell::app
