@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "comparison_files.h"
 #include "comparison_job.h"
+#include "comparison_outputs.h"
 #include "comparison_pictures.h"
 #include "comparison_table.h"
 #include "figure_text.h"
@@ -14,26 +15,21 @@
 #include "isa_option.h"
 #include "progress.h"
 #include "quell/text/diagnostic.h"
-#include "results.h"
 #include "text_output.h"
 
 namespace quell::app {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct Arguments {
   ComparisonArguments comparison;
   VerbosityArguments verbosity;
   std::string threads = "0";
   IsaArguments isa;
-  std::optional<fs::path> maps, picture;
-  std::optional<std::string> json, csv;
+  ComparisonOutputs outputs;
   std::vector<std::string> fail_above, fail_below;
   bool each_frame = false, summary = false;
 };
 
-constexpr const char* kToOutput = "-";
 constexpr int kMostThreads = 1024;
 
 std::vector<Threshold> parse_thresholds(const Arguments& arguments) {
@@ -45,26 +41,6 @@ std::vector<Threshold> parse_thresholds(const Arguments& arguments) {
   if (arguments.each_frame && thresholds.empty())
     throw Error(Fault::usage, "--each-frame", "there is no bar to be kept; add --fail-above or --fail-below");
   return thresholds;
-}
-
-/// Before anything is measured, which may take long.
-void check_outputs(const Arguments& arguments) {
-  if (arguments.json == kToOutput && arguments.csv == kToOutput)
-    throw Error(Fault::usage, "--csv", "--json goes to the standard output, too; name a file for one of them");
-  if (arguments.json && *arguments.json != kToOutput) refuse_to_replace_others(*arguments.json, kComparisonJson, "--json");
-  if (arguments.csv && *arguments.csv != kToOutput) refuse_to_replace_others(*arguments.csv, kComparisonCsv, "--csv");
-  if (!arguments.picture) return;
-  if (arguments.picture->extension() != ".png")
-    throw Error(Fault::usage, "--picture", "'" + arguments.picture->string() + "' is no name of a PNG; let it end in .png");
-  refuse_to_replace_others(*arguments.picture, "\x89PNG", "--picture");
-}
-
-void check_pictures(const Arguments& arguments, const ComparisonJob& job) {
-  const bool has_errors = contains(job.options.metrics, Metric::flip) || contains(job.options.metrics, Metric::hdr_flip);
-  if (!has_errors && (arguments.maps || arguments.picture))
-    throw Error(Fault::usage, arguments.maps ? "--maps" : "--picture",
-                "draws the errors of flip or hdrflip; add one of them to --metrics");
-  if (arguments.picture) refuse_to_replace_images(*arguments.picture, job, "--picture");
 }
 
 /// False when a signal came.
@@ -80,14 +56,13 @@ bool choose_exposures(ComparisonJob& job, Executor& executor, Console& console) 
 
 std::vector<ComparedFrame> compare_frames(const Arguments& arguments, const ComparisonJob& job, Executor& executor,
                                           WorstFrame& worst, Console& console) {
-  std::optional<ErrorMaps> maps;
-  if (arguments.maps) maps.emplace(*arguments.maps, job);
+  const ComparisonOutputs& outputs = arguments.outputs;
   Progress progress(console, job.frames.size());
   ComparisonHooks hooks;
   hooks.cancelled = interrupted;
   hooks.on_frame = [&](const ComparedFrame& frame, const FramePictures* pictures) {
-    if (pictures && maps) maps->write(*pictures, executor);
-    if (pictures && arguments.picture) worst.look_at(frame, *pictures);
+    if (pictures && outputs.maps) write_maps(*outputs.maps, job, *pictures, executor);
+    if (pictures && outputs.picture) worst.look_at(frame, *pictures);
     FrameReport report;
     report.frame = frame.frame, report.ok = frame.error.empty(), report.error = frame.error, report.seconds = frame.seconds;
     progress.frame_done(report, 0);
@@ -131,16 +106,16 @@ void tell_warnings_of_files(const ComparisonJob& job) {
 
 void write_results(const Arguments& arguments, const ComparisonJob& job, const std::vector<ComparedFrame>& frames,
                    const WorstFrame& worst) {
+  const auto& [maps, picture, json, csv] = arguments.outputs;
   const auto place = [](const std::optional<std::string>& name) { return name == kToOutput ? std::nullopt : name; };
-  if (arguments.json) write_output(comparison_json(job, frames), place(arguments.json), kComparisonJson, "--json");
-  if (arguments.csv) write_output(comparison_csv(job, frames), place(arguments.csv), kComparisonCsv, "--csv");
-  if (arguments.json != kToOutput && arguments.csv != kToOutput)
-    std::cout << printable(make_table(job, frames, arguments.summary));
+  // What is looked at comes first: writing files may fail.
+  if (json != kToOutput && csv != kToOutput) std::cout << printable(make_table(job, frames, arguments.summary)) << std::flush;
+  if (json) write_output(comparison_json(job, frames), place(json), kComparisonJson, "--json");
+  if (csv) write_output(comparison_csv(job, frames), place(csv), kComparisonCsv, "--csv");
   std::cout << std::flush;  // before what goes to the other stream
-  if (!arguments.picture) return;
-  if (worst.draw(*arguments.picture) == std::optional(false))
-    spdlog::warn("--picture: no font was found, so that nothing in {} is labeled; install fonts-dejavu-core",
-                 arguments.picture->string());
+  if (!picture) return;
+  if (worst.draw(*picture) == std::optional(false))
+    spdlog::warn("--picture: no font was found, so that nothing in {} is labeled; install fonts-dejavu-core", picture->string());
 }
 
 ExitCode tell_outcome(const Arguments& arguments, const ComparisonJob& job, const std::vector<ComparedFrame>& frames,
@@ -165,10 +140,9 @@ ExitCode run(const Arguments& arguments, Console& console) {
   pin_isa(arguments.isa);
   const int threads = parse_count(arguments.threads, "--threads", 0, kMostThreads);
   const std::vector<Threshold> thresholds = parse_thresholds(arguments);
-  check_outputs(arguments);
   ComparisonJob job = prepare_comparison(arguments.comparison, thresholds);
-  job.want_maps = arguments.maps || arguments.picture;
-  check_pictures(arguments, job);
+  job.want_maps = arguments.outputs.maps || arguments.outputs.picture;
+  prepare_outputs(arguments.outputs, job);
   Executor executor(threads);
   WorstFrame worst(job);
   std::vector<ComparedFrame> frames;
@@ -205,17 +179,18 @@ void add_outputs(CLI::App& app, Arguments& arguments) {
   app.add_flag("--summary", arguments.summary, "Print the figures of all frames together alone.")
       ->disable_flag_override()
       ->group(kOutputGroup);
-  app.add_option("--json", arguments.json,
+  app.add_option("--json", arguments.outputs.json,
                  "Write all figures in full to a file; - for the standard output, instead of the table.")
       ->type_name("FILE")
       ->group(kOutputGroup);
-  app.add_option("--csv", arguments.csv, "The same as a table of comma-separated values.")
+  app.add_option("--csv", arguments.outputs.csv, "The same as a table of comma-separated values.")
       ->type_name("FILE")
       ->group(kOutputGroup);
-  app.add_option("--maps", arguments.maps, "Draw the errors of flip and hdrflip in FLIP's colors: FOLDER/LABEL.flip.####.png.")
+  app.add_option("--maps", arguments.outputs.maps,
+                 "Draw the errors of flip and hdrflip in FLIP's colors: FOLDER/LABEL.flip.####.png.")
       ->type_name("FOLDER")
       ->group(kOutputGroup);
-  app.add_option("--picture", arguments.picture,
+  app.add_option("--picture", arguments.outputs.picture,
                  "Draw the frame with the largest error by flip: reference, images, errors and figures on one sheet.")
       ->type_name("FILE.png")
       ->group(kOutputGroup);
@@ -236,6 +211,8 @@ void add_outputs(CLI::App& app, Arguments& arguments) {
 Command add_compare(CLI::App& program) {
   CLI::App& app = *program.add_subcommand("compare", "Measure how far images are from a reference.");
   app.footer(
+      "Metrics:\n" + describe_metrics() +
+      "\n"
       "Example:\n"
       "  quell compare reference.####.exr noisy.####.exr denoised.####.exr --fail-above flip=0.1\n"
       "prints a line for each image of each frame, and of all frames.\n"

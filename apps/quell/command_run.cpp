@@ -104,10 +104,15 @@ std::vector<MeasuredOutput> take_measured(MeasuringSink* measuring, const FrameR
   return {};
 }
 
-/// With `watch`, computes what has changed since its last run.
-ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log, Console& console, Watch* watch) {
-  Job& job = run.job;
-  SessionOptions options = run.options;
+void tell_frame(const FrameReport& report, const BufferPool::Usage& usage, Preparation& run, Progress& progress, RunLog& log) {
+  const std::vector<MeasuredOutput> measured = take_measured(run.measuring.get(), report);
+  const std::vector<Metric> metrics = run.measuring ? run.measuring->options().compare.metrics : std::vector<Metric>();
+  progress.frame_done(report, usage.in_use + usage.idle, list_measured(measured, metrics));
+  log.frame(report, run.job.plan, usage, measured, metrics);
+}
+
+/// What passes say goes to both logs, and signals cancel.
+SessionOptions with_listeners(SessionOptions options, std::optional<TraceFile>& trace, RunLog& log) {
   options.log = [&](int level, const std::string& message) {
     log_of_pass(level, message);
     const bool known = level >= QUELL_LOG_WARNING;  // the log takes these from spdlog
@@ -115,14 +120,18 @@ ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log,
   };
   options.cancelled = interrupted;
   options.trace = trace ? &trace->trace() : nullptr;
+  return options;
+}
+
+/// With `watch`, computes what has changed since its last run.
+ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log, Console& console, Watch* watch) {
+  Job& job = run.job;
+  SessionOptions options = with_listeners(run.options, trace, log);
   std::optional<Session> session;
   Progress progress(console, job.frames.size());
   options.on_frame = [&](const FrameReport& report) {
     const BufferPool::Usage usage = watch ? watch->rerun.usage() : session->pool().usage();
-    const std::vector<MeasuredOutput> measured = take_measured(run.measuring.get(), report);
-    const std::vector<Metric> metrics = run.measuring ? run.measuring->options().compare.metrics : std::vector<Metric>();
-    progress.frame_done(report, usage.in_use + usage.idle, list_measured(measured, metrics));
-    log.frame(report, job.plan, usage, measured, metrics);
+    tell_frame(report, usage, run, progress, log);
   };
   FrameSink& sink = run.measuring ? static_cast<FrameSink&>(*run.measuring) : *run.sink;
   RerunReport rerun;

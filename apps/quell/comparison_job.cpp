@@ -86,6 +86,17 @@ std::optional<ImageSeries> find_motion(const ComparisonArguments& arguments, con
   return std::nullopt;
 }
 
+void warn_of_what_has_no_effect(const ComparisonArguments& arguments, const std::vector<Metric>& metrics) {
+  const auto warn = [](const char* option, const char* needed) {
+    spdlog::warn("{} has no effect: it is for {}, which is not measured; add it to --metrics", option, needed);
+  };
+  const bool has_hdr_flip = contains(metrics, Metric::hdr_flip);
+  if (arguments.metrics.exposures && !has_hdr_flip) warn("--exposures", "hdrflip");
+  if (arguments.metrics.pixels_per_degree && !has_hdr_flip && !contains(metrics, Metric::flip))
+    warn("--pixels-per-degree", "flip");
+  if (arguments.motion && !contains(metrics, Metric::warped)) warn("--motion", "warped");
+}
+
 }  // namespace
 
 void choose_display(CompareOptions& options, const ImageSeries& reference, const std::optional<std::string>& stated) {
@@ -106,7 +117,7 @@ void choose_display(CompareOptions& options, const ImageSeries& reference, const
 ComparisonJob prepare_comparison(const ComparisonArguments& arguments, const std::vector<Threshold>& thresholds) {
   std::vector<Operand> operands;
   for (const std::string& text : arguments.images) operands.push_back(parse_operand(text));
-  ComparisonJob job{ImageSeries::open(parse_operand(arguments.reference).what, SeriesRole::reference), {}, {}, {}, {}, {}};
+  ComparisonJob job{ImageSeries::open(arguments.reference, SeriesRole::reference), {}, {}, {}, {}, {}};
   for (const Operand& operand : operands) job.images.push_back(ImageSeries::open(operand.what, SeriesRole::image));
   job.labels = make_labels(operands, job.images);
   const std::vector<NamedSeries> all = list_series(job);
@@ -116,7 +127,10 @@ ComparisonJob prepare_comparison(const ComparisonArguments& arguments, const std
   job.options = parse_metric_options(arguments.metrics, default_metrics(always, {Metric::tpsnr, Metric::warped}, job.frames));
   for (const Threshold& threshold : thresholds)
     if (threshold.metric && !contains(job.options.metrics, *threshold.metric)) job.options.metrics.push_back(*threshold.metric);
+  warn_of_what_has_no_effect(arguments, job.options.metrics);
   job.motion = find_motion(arguments, job.reference);
+  if (arguments.motion && contains(job.options.metrics, Metric::warped))  // or every frame would fail
+    require_one_size({{"reference", job.reference}, {"motion", *job.motion}}, job.frames.front());
   choose_display(job.options, job.reference, arguments.metrics.display);
   return job;
 }

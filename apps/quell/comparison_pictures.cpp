@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "figure_text.h"
 #include "metric_options.h"
 #include "quell/sequence/contact_sheet.h"
 #include "quell/sequence/file_pattern.h"
-#include "quell/text/error.h"
-#include "results.h"
 
 namespace quell::app {
 namespace fs = std::filesystem;
@@ -21,27 +18,17 @@ constexpr int kLargest = 640, kSmallest = 400;  // width of a panel
 constexpr Rgb kNotFinite{255, 0, 255};
 constexpr Rgb kNothing{24, 24, 26};
 
-using Files = std::set<fs::path>;
-
-fs::path full(const fs::path& path) {
-  std::error_code error;
-  const fs::path found = fs::weakly_canonical(path, error);
-  return error ? fs::absolute(path, error) : found;
+fs::path map_file(const fs::path& folder, const ComparisonJob& job, std::size_t image, Metric metric, std::int64_t frame) {
+  const std::string number = padded(frame, job.reference.sequence()->padding());
+  return folder / (job.labels[image] + "." + std::string(info(metric).name) + "." + number + ".png");
 }
 
-Files files_of(const ComparisonJob& job) {
-  Files files;
-  const auto add = [&](const ImageSeries& series) {
-    for (const std::int64_t frame : job.frames) files.insert(full(series.file(frame)));
-  };
-  add(job.reference);
-  for (const ImageSeries& image : job.images) add(image);
-  if (job.motion) add(*job.motion);
-  return files;
-}
-
-[[noreturn]] void refuse(const fs::path& file, const char* option) {
-  throw Error(Fault::usage, option, "would replace " + file.string() + ", which is compared; choose another name");
+void write_map(const Image& map, const fs::path& to) {
+  const FloatImage errors = map.floats();
+  Raster raster(map.width(), map.height());
+  for (int y = 0; y < map.height(); ++y)
+    for (int x = 0; x < map.width(); ++x) raster.at(x, y) = flip_color(errors.at(x, y));
+  write_raster(to, raster);
 }
 
 /// Where `at` of a panel's pixels begins in the image.
@@ -97,39 +84,20 @@ Raster show_errors(const Image& map) {
 
 }  // namespace
 
-void refuse_to_replace_images(const fs::path& file, const ComparisonJob& job, const char* option) {
-  if (files_of(job).contains(full(file))) refuse(file, option);
+std::vector<fs::path> list_maps(const fs::path& folder, const ComparisonJob& job) {
+  std::vector<fs::path> files;
+  for (const Metric metric : {Metric::flip, Metric::hdr_flip})
+    for (std::size_t i = 0; i < job.images.size() && contains(job.options.metrics, metric); ++i)
+      for (const std::int64_t frame : job.frames) files.push_back(map_file(folder, job, i, metric, frame));
+  return files;
 }
 
-ErrorMaps::ErrorMaps(const fs::path& folder, const ComparisonJob& job)
-    : folder_(folder), job_(job), padding_(job.reference.sequence()->padding()) {
-  prepare_folder(folder, "--maps");
-  const Files files = files_of(job);
-  for (const std::int64_t frame : job.frames)
-    for (std::size_t i = 0; i < job.images.size(); ++i)
-      for (const char* metric : {"flip", "hdrflip"})
-        if (files.contains(full(file(i, metric, frame)))) refuse(file(i, metric, frame), "--maps");
-}
-
-fs::path ErrorMaps::file(std::size_t image, const char* metric, std::int64_t frame) const {
-  return folder_ / (job_.labels[image] + "." + metric + "." + padded(frame, padding_) + ".png");
-}
-
-void ErrorMaps::write(const FramePictures& pictures, Executor& executor) const {
-  const auto write_one = [&](const Image& map, const fs::path& to) {
-    if (!map) return;
-    const FloatImage errors = map.floats();
-    Raster raster(map.width(), map.height());
-    for (int y = 0; y < map.height(); ++y)
-      for (int x = 0; x < map.width(); ++x) raster.at(x, y) = flip_color(errors.at(x, y));
-    write_raster(to, raster);
-  };
-  run_on(executor)(static_cast<int>(2 * job_.images.size()), [&](int i) {
+void write_maps(const fs::path& folder, const ComparisonJob& job, const FramePictures& pictures, Executor& executor) {
+  run_on(executor)(static_cast<int>(2 * job.images.size()), [&](int i) {
     const auto image = static_cast<std::size_t>(i / 2);
-    if (i % 2 == 0)
-      write_one(pictures.flip_maps[image], file(image, "flip", pictures.frame));
-    else
-      write_one(pictures.hdr_flip_maps[image], file(image, "hdrflip", pictures.frame));
+    const bool is_hdr = i % 2 == 1;
+    if (const Image& map = (is_hdr ? pictures.hdr_flip_maps : pictures.flip_maps)[image])
+      write_map(map, map_file(folder, job, image, is_hdr ? Metric::hdr_flip : Metric::flip, pictures.frame));
   });
 }
 

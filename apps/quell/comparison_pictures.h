@@ -8,20 +8,10 @@
 
 namespace quell::app {
 
-/// The errors of each pixel, unscaled.
-class ErrorMaps {
- public:
-  /// Makes the folder. Throws Error(usage) naming --maps when that fails, or a map would replace a file that is compared.
-  ErrorMaps(const std::filesystem::path& folder, const ComparisonJob& job);
-  /// Writes FOLDER/LABEL.flip.####.png, or hdrflip, of each image, on the executor's threads. Throws Error(frame).
-  void write(const FramePictures& pictures, Executor& executor) const;
-
- private:
-  std::filesystem::path file(std::size_t image, const char* metric, std::int64_t frame) const;
-  std::filesystem::path folder_;
-  const ComparisonJob& job_;
-  int padding_;
-};
+/// The files of all maps: FOLDER/LABEL.flip.####.png and hdrflip, of those that are among the metrics.
+std::vector<std::filesystem::path> list_maps(const std::filesystem::path& folder, const ComparisonJob& job);
+/// Writes those of one frame, the errors of each pixel, unscaled, on the executor's threads. Throws Error(frame).
+void write_maps(const std::filesystem::path& folder, const ComparisonJob& job, const FramePictures& pictures, Executor& executor);
 
 /// Keeps the images of the frame in which an image has the largest error by FLIP (else HDR-FLIP), of equal ones the first.
 class WorstFrame {
@@ -40,8 +30,5 @@ class WorstFrame {
   ComparedFrame frame_;
   FramePictures pictures_;
 };
-
-/// Throws Error(usage) naming the option when the file is one that is compared.
-void refuse_to_replace_images(const std::filesystem::path& file, const ComparisonJob& job, const char* option);
 
 }  // namespace quell::app

@@ -100,7 +100,10 @@ class Comparison {
     } catch (const std::bad_alloc&) { result.error = "memory ran out"; } catch (const Error& error) {
       result.error = error.what();
     }
-    if (!result.error.empty()) result.images.clear();
+    if (!result.error.empty()) {
+      result.images.clear();
+      result.lacks_motion = false;  // it failed for another reason
+    }
     previous_ = result.error.empty() ? std::optional(std::move(read)) : std::nullopt;
     return result;
   }

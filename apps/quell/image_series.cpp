@@ -46,11 +46,13 @@ std::string choose_input(const Sequence& sequence, SeriesRole role, const std::s
                   "; name the files instead, such as " + (fs::path(what).parent_path() / "NAME.####.exr").string());
 }
 
-/// The message without "--in color=", which nobody wrote.
-Error speak_of(const std::string& what, const std::string& option, const Error& error) {
+/// The message without the input and its "--in color=", which nobody wrote.
+Error speak_of(const std::string& what, SeriesRole role, const Error& error) {
   std::string text = error.what();
-  const std::string written = "--in " + option;
+  const std::string input = input_of(role), written = "--in " + input + "=" + what;
   if (text.starts_with(written)) text = what + text.substr(written.size());
+  const std::string purpose = " for the input '" + input + "' (" + written + ")";
+  if (text.ends_with(purpose)) text.resize(text.size() - purpose.size());
   return {error.fault(), "", text};
 }
 
@@ -81,12 +83,15 @@ ImageSeries ImageSeries::open(const std::string& what, SeriesRole role, Sequence
     series.single_ = spec.pattern.single_frame();
     series.names_ = parts_of(spec.pattern.folder() / "file");
     series.names_.front() = spec.pattern.stem().empty() ? spec.pattern.name() : spec.pattern.stem();
-    if (!spec.layer.empty()) series.names_.insert(series.names_.begin(), spec.layer);
+    if (!spec.layer.empty()) {
+      series.names_.insert(series.names_.begin(), spec.layer);
+      series.files_ += ":" + spec.layer;
+    }
     return series;
   } catch (const Error& error) {
     if (std::string_view(error.what()).starts_with("--in:1:"))  // a pattern without a counter: the file is not there
       throw Error(Fault::input, what, "there is no such file or folder; files of a sequence are named with ####, %d or %04d");
-    throw speak_of(what, option, error);
+    throw speak_of(what, role, error);
   }
 }
 
@@ -131,6 +136,9 @@ std::string clean(std::string name) {
   return name;
 }
 
+/// The reference's, in messages.
+constexpr const char* kReferenceLabel = "reference";
+
 /// The names of the first rank at which all are distinct, of the series that need one; else those of the first rank.
 std::vector<std::string> choose_names(const std::vector<const ImageSeries*>& series) {
   std::size_t ranks = SIZE_MAX;
@@ -143,7 +151,8 @@ std::vector<std::string> choose_names(const std::vector<const ImageSeries*>& ser
   };
   for (std::size_t rank = 0; rank < ranks; ++rank) {
     const std::vector<std::string> names = names_at(rank);
-    if (std::set(names.begin(), names.end()).size() == names.size()) return names;
+    std::set<std::string> distinct(names.begin(), names.end());
+    if (distinct.size() == names.size() && !distinct.contains(kReferenceLabel)) return names;
   }
   return names_at(0);
 }
@@ -158,7 +167,10 @@ std::vector<std::string> make_labels(const std::vector<Operand>& operands, const
     if (label.empty()) {
       nameless.push_back(&series[i]);
     } else if (label != clean(label) || label.front() == '.') {
-      throw Error(Fault::usage, operands[i].what, "'" + label + "' cannot be a label: it would be part of a file's name");
+      throw Error(Fault::usage, operands[i].what,
+                  "'" + label + "' cannot be a label: files are named after it; leave out '/', line breaks and a '.' in front");
+    } else if (label == kReferenceLabel) {
+      throw Error(Fault::usage, operands[i].what, "the label 'reference' is that of the first operand; choose another");
     } else if (!taken.insert(label).second) {
       throw Error(Fault::usage, operands[i].what, "the label '" + label + "' is given twice; choose another");
     }
@@ -169,7 +181,8 @@ std::vector<std::string> make_labels(const std::vector<Operand>& operands, const
     std::string label = operands[i].label;
     if (label.empty()) {
       label = names[at++];
-      for (int n = 2; !taken.insert(label).second; ++n) label = names[at - 1] + "-" + std::to_string(n);
+      for (int n = 2; label == kReferenceLabel || !taken.insert(label).second; ++n)
+        label = names[at - 1] + "-" + std::to_string(n);
     }
     labels.push_back(std::move(label));
   }

@@ -27,7 +27,7 @@ class ImageSeries {
   /// An input of a sequence that is open. Throws Error(input) when there is no such input.
   ImageSeries(std::shared_ptr<Sequence> sequence, std::string input);
 
-  /// Folder and pattern, for people.
+  /// Folder and pattern, with the layer that was named, for people.
   std::string files() const { return files_; }
   /// Names for it, the most telling first: the layer, the file's stem or the folder's name, then the folders above.
   const std::vector<std::string>& names() const { return names_; }
@@ -67,8 +67,8 @@ struct Operand {
 /// A file of the whole text's name is taken for itself, whatever its name.
 Operand parse_operand(const std::string& text);
 
-/// A label for each series: the one given, else the shortest that is distinct. Throws Error(usage) when two given ones are equal,
-/// or one cannot be part of a file's name.
+/// A label for each series: the one given, else the shortest that is distinct; never "reference". Throws Error(usage) when two
+/// given ones are equal, or one cannot be part of a file's name.
 std::vector<std::string> make_labels(const std::vector<Operand>& operands, const std::vector<ImageSeries>& series);
 
 }  // namespace quell::app

@@ -6,12 +6,13 @@
 
 #include "arguments.h"
 #include "quell/text/diagnostic.h"
+#include "text_layout.h"
 
 namespace quell::app {
 namespace {
 
 constexpr double kMostPixelsPerDegree = 1000, kMostStops = 100;
-constexpr int kMostExposures = 100;
+constexpr int kMostExposures = 200;  // one a stop of all that can be given
 
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts(1);
@@ -66,10 +67,13 @@ std::string list_of_transforms() {
 
 }  // namespace
 
-std::string describe(const DisplayInfo& display) {
-  const std::string name(display.name), summary(display.summary);
-  return summary.starts_with(name + ":") ? summary : name + ": " + summary;
+std::string describe_metrics() {
+  std::string text;
+  for (const MetricInfo& about : metrics()) text += entry(about.name, about.summary, 2, 12);
+  return text;
 }
+
+std::string describe(const DisplayInfo& display) { return std::string(display.name) + ": " + std::string(display.summary); }
 
 bool contains(const std::vector<Metric>& metrics, Metric metric) { return std::ranges::find(metrics, metric) != metrics.end(); }
 

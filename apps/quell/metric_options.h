@@ -27,6 +27,9 @@ void add_flip_options(CLI::App& app, MetricArguments& arguments);
 /// option.
 CompareOptions parse_metric_options(const MetricArguments& arguments, const std::vector<Metric>& default_metrics);
 
+/// A line for each metric, for help texts.
+std::string describe_metrics();
+
 /// "reinhard: (x / (1 + x))^(1/2.2)"
 std::string describe(const DisplayInfo& display);
 

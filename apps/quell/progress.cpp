@@ -57,7 +57,7 @@ std::string progress_line(const ProgressState& state, int columns) {
     if (rate > 0) text += "  " + format_rate(rate) + " frames/s";
     if (rate > 0 && state.done < state.total)
       text += "  " + format_duration(static_cast<double>(state.total - state.done) / rate) + " left";
-    text += "  " + format_bytes(state.bytes);
+    if (state.bytes > 0) text += "  " + format_bytes(state.bytes);
   }
   // A full last column would make some terminals begin a new line.
   const int room = std::max(columns - 1, 1);

@@ -17,7 +17,7 @@ struct ProgressState {
   std::size_t total = 0;   ///< frames of the run
   std::int64_t frame = 0;  ///< the latest one; meaningless while done is 0
   double seconds = 0;      ///< since the start
-  std::size_t bytes = 0;   ///< held by images
+  std::size_t bytes = 0;   ///< held by images; 0: nobody counts them
 };
 
 /// "[######      ]  4/12  frame 3  1.2 frames/s  7 s left  250 MiB", shorter than `columns`: the bar gives way first.

@@ -35,7 +35,7 @@ struct CompareInput {
 };
 
 struct FrameScores {
-  std::vector<Score> scores;  ///< one for each of the options' metrics
+  std::vector<Score> scores;  ///< one for each of the options' metrics, in their order
   /// Pixels with a channel that is NaN or infinite. A pixel that is so in either image counts in no metric, and is 0 in both
   /// for metrics that look at neighborhoods. Temporal metrics leave out those of both frames.
   std::uint64_t bad_in_reference = 0, bad_in_image = 0;
@@ -44,7 +44,8 @@ struct FrameScores {
 };
 
 /// Scores of one frame. The same for any `parallel`, bit for bit. `want_maps` asks for the maps of those of flip and hdr_flip
-/// that are among the metrics. Throws Error(input) when sizes or types do not fit, naming both.
+/// that are among the metrics. Throws Error(input) when sizes or types do not fit, naming both, and what flip() and hdr_flip()
+/// throw for options that are none.
 FrameScores compare(const CompareInput& input, const CompareOptions& options, bool want_maps, BufferPool& pool,
                     const Parallel& parallel = run_serially);
 

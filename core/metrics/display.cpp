@@ -16,7 +16,7 @@ constexpr std::array kTransforms{
     DisplayInfo{DisplayTransform::gamma, "gamma", "x^(1/2.2), clamped to 1"},
     DisplayInfo{DisplayTransform::srgb, "srgb", "the curve of sRGB, clamped to 1"},
     DisplayInfo{DisplayTransform::aces, "aces", "Narkowicz's fit of the ACES curve, then the curve of sRGB"},
-    DisplayInfo{DisplayTransform::none, "none", "none: the images hold display values already, which are clamped to 0..1"},
+    DisplayInfo{DisplayTransform::none, "none", "the images hold display values already, which are clamped to 0..1"},
 };
 
 double encode_srgb(double light) { return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055; }

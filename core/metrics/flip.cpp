@@ -72,12 +72,20 @@ Score for_tiles(const FlipImages& images, int radius, const FillErrors& fill_err
   return total;
 }
 
+// More than the range of float, of 277 stops, asks for.
+constexpr int kMostExposures = 1000, kMostStops = 1000;
+
 // Radiance is multiplied with them. One that float cannot hold shows everything white all the same.
 std::vector<float> gains_of(const Exposures& exposures) {
-  if (exposures.count < 1)
-    throw Error(Fault::usage, "exposures", std::to_string(exposures.count) + " of them; there has to be at least one");
-  if (!std::isfinite(exposures.start) || !std::isfinite(exposures.stop))
-    throw Error(Fault::usage, "exposures", "the first or the last is no number of stops");
+  if (exposures.count < 1 || exposures.count > kMostExposures)
+    throw Error(Fault::usage, "exposures",
+                std::to_string(exposures.count) + " of them; there has to be at least one, and at most " +
+                    std::to_string(kMostExposures));
+  for (const double stop : {exposures.start, exposures.stop})
+    if (!(std::abs(stop) <= kMostStops))
+      throw Error(
+          Fault::usage, "exposures",
+          std::to_string(stop) + " stops are not within -" + std::to_string(kMostStops) + ".." + std::to_string(kMostStops));
   std::vector<float> gains;
   const double step = exposures.count > 1 ? (exposures.stop - exposures.start) / (exposures.count - 1) : 0;
   for (int i = 0; i < exposures.count; ++i) {

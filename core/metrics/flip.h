@@ -2,10 +2,10 @@
 // Source: Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", HPG 2020; for radiance (HDR-FLIP) Andersson et
 //         al., "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics 2021.
 // Borders: beyond them the pixels at them go on, as in the paper's program.
-// Error:   of a pixel's parts, 1e-3 of the color distance HyAB (which goes to 308) and 4e-7 of the feature difference before its
+// Error:   of a pixel's parts, 1e-3 of the color distance HyAB (which goes to 203) and 4e-7 of the feature difference before its
 //          square root (which goes to 1), then 3e-6 of the result: float, against the formulas in double. Where the colors agree
-//          and features do not, the power of the two makes that more. 1.44e-7 of features are there on purpose (kFlipEdgeSum in
-//          flip_filters.h): the paper's program has them, and with them flat areas have its figures.
+//          and features do not, the power of the two makes that more. Up to 1.44e-7 of features are there on purpose
+//          (kFlipEdgeRounding in flip_filters.h): they stand for the paper's program's own rounding, which its figures show.
 #pragma once
 
 #include <array>
@@ -35,10 +35,10 @@ struct FlipImages {
 Score flip(const FlipImages& images, double pixels_per_degree, FloatOutput map, BufferPool& pool, const Parallel& parallel);
 
 /// The pictures that HDR-FLIP takes of radiance: exposures in stops (radiance times 2^stop), from `start` to `stop`, evenly
-/// apart.
+/// apart. Stops are within -1000..1000.
 struct Exposures {
   double start = 0, stop = 0;
-  int count = 2;  ///< at least 1
+  int count = 2;  ///< 1..1000
   bool operator==(const Exposures&) const = default;
 };
 
@@ -53,7 +53,7 @@ LuminanceRange luminance_range(FloatImage reference, BufferPool& pool, const Par
 Exposures choose_exposures(std::span<const LuminanceRange> frames);
 
 /// Radiance, of which negative values count as 0: the errors of each pixel are the largest over the exposures, each tone mapped
-/// by the ACES curve. Otherwise as flip(). Throws Error(usage) when there is no exposure, too.
+/// by the ACES curve. Otherwise as flip(). Throws Error(usage) for other exposures than those above, too.
 Score hdr_flip(const FlipImages& images, const Exposures& exposures, double pixels_per_degree, FloatOutput map, BufferPool& pool,
                const Parallel& parallel);
 

@@ -1,9 +1,9 @@
 // A tile is worked on in three steps: both pictures are brought into the opponent space, with an apron as wide as the filters, in
 // which the pixels at the picture's border go on; then each row is filtered across rows, and what comes of it along the row,
-// together with all that follows for each pixel. The rows between the two stay in the first-level cache.
+// together with all that follows for each pixel. The rows between the two, 46 kB, stay in the nearest caches.
 //
-// Filters of features are sums of differences from the center, or of opposite pixels, so that flat areas give exactly 0: features
-// enter by a square root, which makes much of a rounding.
+// Filters of features are sums of differences from the center, or of opposite pixels, so that flat areas give exactly 0 before
+// kFlipEdgeRounding is added: features enter by a square root, which makes much of a rounding.
 #include "quell/metrics/flip_kernel.h"
 
 #include <algorithm>
@@ -236,7 +236,7 @@ HWY_INLINE V difference(Pair x, Pair y) { return hn::AbsDiff(length(x.a, y.a), l
 // By how much edges or points, whichever differ more, do.
 HWY_INLINE V feature_difference(const Weights& w, Sides smooth, Sides edge, Sides point) {
   const Pair center = load_pair(smooth.center, smooth.to_image), twice = add(center, center);
-  Pair edge_x = mul(set(kFlipEdgeSum), center), point_x{zero(), zero()};
+  Pair edge_x = mul(set(kFlipEdgeRounding), center), point_x{zero(), zero()};
   Pair edge_y = mul_add(set(w.luma[0].smooth), load_pair(edge.center, edge.to_image), edge_x);
   Pair point_y = mul(set(w.luma[0].smooth), load_pair(point.center, point.to_image));
   for (int i = 1; i < static_cast<int>(w.luma.size()); ++i) {

@@ -3,9 +3,7 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
 namespace quell {
 
@@ -27,8 +25,7 @@ struct MetricInfo {
   std::string_view unit;  ///< "dB", or ""
   bool higher_is_better;
   bool is_temporal;          ///< needs the frame before
-  std::string_view summary;  ///< a line for help texts
-  std::string_view source;   ///< paper and equation, or formula
+  std::string_view summary;  ///< a line for help texts; README.md has formulas and sources
 };
 
 /// All, in the order of the enumeration.

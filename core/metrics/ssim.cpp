@@ -50,11 +50,10 @@ void weigh_columns(const Shown& in, int y, int c, const SsimWeights& weights, co
     for (int dy = -kRadius; dy <= kRadius; ++dy) {
       const V w = hn::Set(d, weights[static_cast<std::size_t>(std::abs(dy))]);
       const V r = load(in.reference.row(y + dy, c) + x), a = load(in.image.row(y + dy, c) + x);
-      const V wr = hn::Mul(w, r), wa = hn::Mul(w, a);
-      sum_r = hn::Add(sum_r, wr);
-      sum_a = hn::Add(sum_a, wa);
-      sum_squares = hn::MulAdd(wr, r, hn::MulAdd(wa, a, sum_squares));
-      sum_products = hn::MulAdd(wr, a, sum_products);
+      sum_r = hn::MulAdd(w, r, sum_r);
+      sum_a = hn::MulAdd(w, a, sum_a);
+      sum_squares = hn::MulAdd(w, hn::MulAdd(r, r, hn::Mul(a, a)), sum_squares);
+      sum_products = hn::MulAdd(w, hn::Mul(r, a), sum_products);
     }
     hn::StoreU(sum_r, d, to.data + x);
     hn::StoreU(sum_a, d, to.data + to.stride + x);
@@ -74,12 +73,14 @@ HWY_INLINE V weigh_row(const double* center, const SsimWeights& weights) {
   return sum;
 }
 
+// Exactly 1 where the windows are alike: sums of squares are twice those of products then, to the last bit, and so are those of
+// the means. (Products of two floats are exact in double; those of means are not, so that they take no fused addition.)
 HWY_INLINE V similarity(const double* sums, std::ptrdiff_t stride, const SsimWeights& weights) {
   const D d;
   const V c1 = hn::Set(d, 0.01 * 0.01), c2 = hn::Set(d, 0.03 * 0.03), two = hn::Set(d, 2);
   const V mean_r = weigh_row(sums, weights), mean_a = weigh_row(sums + stride, weights);
   const V squares = weigh_row(sums + 2 * stride, weights), products = weigh_row(sums + 3 * stride, weights);
-  const V of_means = hn::Mul(mean_r, mean_a), of_squares = hn::MulAdd(mean_r, mean_r, hn::Mul(mean_a, mean_a));
+  const V of_means = hn::Mul(mean_r, mean_a), of_squares = hn::Add(hn::Mul(mean_r, mean_r), hn::Mul(mean_a, mean_a));
   const V above = hn::Mul(hn::MulAdd(two, of_means, c1), hn::MulAdd(two, hn::Sub(products, of_means), c2));
   const V below = hn::Mul(hn::Add(of_squares, c1), hn::Add(hn::Sub(squares, of_squares), c2));
   return hn::Div(above, below);

@@ -152,6 +152,43 @@ TEST_F(CompareFiles, MapsReplaceNoImageAndNeedErrors) {
   EXPECT_FALSE(fs::exists(path("maps")));
 }
 
+TEST_F(CompareFiles, ReplaceNoFrameThatIsNotCompared) {
+  for (const char* name : {"r.0001.png", "r.0002.png", "a.0001.png", "a.0002.png"}) make_png(name, 0.5);
+  const std::string before = read_file(path("a.0002.png"));
+  const Outcome outcome = compare({"r.####.png", "a.####.png"}, {"--frames", "1", "--picture", text("a.0002.png")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--picture: would replace " + text("a.0002.png") + ", which is one of the images"));
+  EXPECT_EQ(read_file(path("a.0002.png")), before);
+}
+
+TEST_F(CompareFiles, ReplaceNotEachOther) {
+  make_pair();
+  const auto error_of = [&](const std::vector<std::string>& options) {
+    const Outcome outcome = compare({"r.####.exr", "white.####.exr"}, options);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.out, "") << "nothing was measured";
+    return outcome.err;
+  };
+  const std::string map = "maps/white.flip.0004.png";
+  EXPECT_THAT(error_of({"--json", text("all.txt"), "--csv", text("./all.txt")}),
+              HasSubstr("--csv: " + text("./all.txt") + " is written by --json, too; choose another name"));
+  EXPECT_THAT(error_of({"--maps", text("maps"), "--picture", text(map)}), HasSubstr("is written by --maps, too"));
+  EXPECT_THAT(error_of({"--picture", text("a.png"), "--json", text("a.png")}), HasSubstr("is written by --json, too"));
+}
+
+TEST_F(CompareFiles, HaveAPlaceBeforeAnythingIsMeasured) {
+  make_pair();
+  for (const char* option : {"--json", "--csv", "--picture"}) {
+    const Outcome nowhere = compare({"r.####.exr", "white.####.exr"}, {option, text("nowhere/a.png")});
+    EXPECT_EQ(nowhere.code, 2);
+    EXPECT_EQ(nowhere.err, "error: " + std::string(option) + ": there is no folder " + text("nowhere") + "; make it first\n");
+  }
+  fs::create_directory(path("folder.png"));
+  EXPECT_THAT(compare({"r.####.exr", "white.####.exr"}, {"--picture", text("folder.png")}).err,
+              HasSubstr("--picture: " + text("folder.png") + " is not a file; choose another name"));
+  EXPECT_THAT(compare({"r.####.exr", "white.####.exr"}, {"--maps", ""}).err, HasSubstr("--maps: the name is empty"));
+}
+
 TEST_F(CompareFiles, APictureShowsTheWorstFrame) {
   make_pair();
   make_flat("r.0005.exr", 0);

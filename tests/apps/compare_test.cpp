@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "tests/apps/compare_fixture.h"
+#include "tests/core/sequence/test_files.h"
 
 namespace quell::app::testing {
 namespace {
@@ -139,6 +140,13 @@ TEST_F(Compare, LabelsAreTheShortestNamesThatDiffer) {
   const Outcome twice = compare({"r.exr", "a=x/color.exr", "a=y/color.exr"});
   EXPECT_EQ(twice.code, 2);
   EXPECT_THAT(twice.err, HasSubstr("the label 'a' is given twice; choose another"));
+  make_flat("x/reference.exr", 0.5);
+  EXPECT_EQ(labels({"x/reference.exr"}), "x ") << "messages speak of the reference by that name";
+  EXPECT_EQ(labels({"reference.exr=x/color.exr", "x/reference.exr", "y/b.exr"}), "reference.exr x y ");
+  const std::string color = text("x/color.exr");
+  EXPECT_THAT(compare({"r.exr"}, {"reference=" + color}).err, HasSubstr("the label 'reference' is that of the first operand"));
+  EXPECT_THAT(compare({"r.exr"}, {"..=" + color}).err, HasSubstr("'..' cannot be a label: files are named after it"));
+  EXPECT_EQ(compare({"r.exr"}, {"../a=" + color}).code, 3) << "a path, not a label";
 }
 
 TEST_F(Compare, TwoSingleFilesAreComparedWhateverTheirNumbers) {
@@ -237,6 +245,38 @@ TEST_F(Compare, MotionTellsFlickerFromMovement) {
               HasSubstr("\nmotion     none given: warped takes pixels to stand still\n"));
 }
 
+TEST_F(Compare, LacksMotionOnlyWhereItHasNoFile) {
+  make_frames();
+  make_flat("reference.0003.exr", 0.5);
+  write_file("a.0003.exr", "nothing");
+  make_motion("motion.0001.exr");
+  const Outcome outcome = compare({"reference.####.exr", "a.####.exr"}, {"--motion", text("motion.####.exr"), "-q"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("warped is not told where there is no motion: " + text("motion.####.exr") + " has no file for 2\n"))
+      << "frame 3 failed for another reason";
+}
+
+TEST_F(Compare, RefusesMotionThatDoesNotFitBeforeItMeasures) {
+  make_frames();
+  make_flat("still.0001.exr", 0);
+  const Outcome outcome = compare({"reference.####.exr", "a.####.exr"}, {"--motion", text("still.####.exr")});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_THAT(outcome.err, HasSubstr(text("still.0001.exr") + ": found 3 channels (R,G,B), but motion needs 2 channels"));
+}
+
+TEST_F(Compare, NamesTheLayerThatIsCompared) {
+  test::ExrContent content{.width = kWidth, .height = kHeight};
+  for (const char* channel : {"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"}) content.channels.emplace_back(channel);
+  content.pixels.assign(std::size_t{kWidth} * kHeight * 6, 0.5);
+  test::make_exr(path("layers.exr"), content);
+  const Json all = compare_json({"layers.exr:a", "layers.exr:b"});
+  EXPECT_EQ(all.find("reference")->string, text("layers.exr") + ":a");
+  EXPECT_EQ(all.find("images")->elements.at(0).find("files")->string, text("layers.exr") + ":b");
+  EXPECT_EQ(all.find("images")->elements.at(0).find("label")->string, "b");
+}
+
 TEST_F(Compare, PicturesOfADisplayAreComparedAsTheyStand) {
   // 8 bit numbers 100 and 120, by the curve of sRGB.
   const auto linear = [](double byte) { return std::pow((byte / 255 + 0.055) / 1.055, 2.4); };
@@ -261,7 +301,9 @@ TEST_F(Compare, ExposuresOfHdrFlipAreFixedForAllFrames) {
   const Json given = compare_json({"reference.####.exr", "a.####.exr"}, {"--metrics", "hdrflip", "--exposures", "-1,2.5,9"});
   EXPECT_EQ(given.find("settings")->find("exposures")->find("count")->integer, 9);
   EXPECT_EQ(given.find("settings")->find("exposures")->find("stop")->number, 2.5);
-  for (const char* wrong : {"1", "4,-2", "1,2,0", "a,2"})
+  EXPECT_THAT(compare({"reference.####.exr", "a.####.exr"}, {"--metrics", "mse", "--exposures", "-2,4"}).err,
+              HasSubstr("warning: --exposures has no effect: it is for hdrflip, which is not measured; add it to --metrics\n"));
+  for (const char* wrong : {"1", "4,-2", "1,2,0", "a,2", "1,nan", "-101,2", "1,2,201"})
     EXPECT_EQ(compare({"reference.####.exr", "a.####.exr"}, {"--exposures", wrong}).code, 2) << wrong;
 }
 
@@ -270,7 +312,7 @@ TEST_F(Compare, ExplainsWhatIsNotThere) {
   const Outcome nowhere = compare({"nowhere.exr", "r.exr"});
   EXPECT_EQ(nowhere.code, 3);
   EXPECT_THAT(nowhere.err, HasSubstr(text("nowhere.exr") + ": there is no such file or folder"));
-  EXPECT_THAT(compare({"none.####.exr", "r.exr"}).err, HasSubstr(text("none.####.exr")));
+  EXPECT_EQ(compare({"none.####.exr", "r.exr"}).err, "error: " + text("none.####.exr") + ": there is no file of this name\n");
   EXPECT_THAT(quell({"compare", text("r.exr")}).err, HasSubstr("IMAGES is missing"));
   const Outcome metric = compare({"r.exr", "r.exr"}, {"--metrics", "psnr,filp"});
   EXPECT_EQ(metric.code, 2);

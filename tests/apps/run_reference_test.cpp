@@ -1,5 +1,6 @@
 // quell run --reference: figures beside the frames, which are those that `quell compare` finds in the files.
 #include <cmath>
+#include <csignal>
 #include <map>
 #include <sstream>
 
@@ -121,6 +122,21 @@ TEST_F(RunReference, IsToldByADryRun) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out,
               HasSubstr("\nwould compare 'color' with " + text("shot/reference.####.exr") + ": psnr, ssim, flip and tpsnr\n"));
+}
+
+TEST_F(RunReference, IsMeasuredAnewWhenTheGraphIsSaved) {
+  make_referenced_shot(2);
+  Program program({"run", make_graph(R"({ "gain": 0.5 })"), text("shot"), "-o", text("out"), "--watch", "--reference",
+                   "reference", "--plugin-path", TEST_PLUGINS});
+  ASSERT_TRUE(program.wait_for_error_text("\nwaiting for "));
+  make_graph(R"({ "gain": 0.25 })");
+  ASSERT_TRUE(program.wait_for_error_text("\nscale: 2 of 2 frames\n"));
+  ASSERT_TRUE(program.wait_for_error_text("2 of 2 frames done"));
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  EXPECT_NE(outcome.err.find("frame 2 (2 of 2)"), outcome.err.rfind("frame 2 (2 of 2)"));
+  const auto last = outcome.err.rfind("  color: psnr ");
+  EXPECT_NE(outcome.err.substr(last, 23), outcome.err.substr(outcome.err.find("  color: psnr "), 23)) << outcome.err;
 }
 
 TEST_F(RunReference, ExplainsWhatCannotBe) {

@@ -44,8 +44,7 @@ void compare_frames(benchmark::State& state, const std::vector<Metric>& metrics,
   const CompareOptions options{.metrics = metrics, .display = display};
   const CompareInput& frames = input();
   for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(compare(frames, options, false, pool()).scores[0].sum);
-  state.counters["Mpixel/s"] =
-      benchmark::Counter(kSize.width * kSize.height * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["MP/s"] = benchmark::Counter(kSize.width * kSize.height * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
 }
 
 std::vector<Metric> plain_metrics() {

@@ -54,8 +54,8 @@ TEST_P(FlipOnTarget, HasThePublishedFiguresOfOneWhitePixel) {
 }
 
 // What flip.h promises. Rounded colors: 1e-3 of HyAB, mostly from the dark, where the curve of Lab is 7.8 times as steep as light
-// (5e-7 of light from the blur and two matrices, times 7.8, times 116 for L). Rounded features: 4e-7, of which 1.44e-7 are the
-// sum of the published program's edge filter and the rest roundings of sums of 19 terms. 3e-6 of the error: two powers.
+// (5e-7 of light from the blur and two matrices, times 7.8, times 116 for L). Rounded features: 4e-7, of which 1.44e-7 are
+// the published program's rounding, added on purpose, and the rest roundings of sums of 19 terms. 3e-6 of the error: two powers.
 void expect_within(const Image& map, const std::vector<std::array<double, 2>>& ranges, const std::string& what) {
   for (int y = 0; y < map.height(); ++y)
     for (int x = 0; x < map.width(); ++x) {
@@ -240,12 +240,14 @@ TEST(HdrFlip, IsTheSameForOneExposureGivenTwice) {
   EXPECT_EQ(run_hdr_flip(reference, image, {1, 1, 2}).score, run_hdr_flip(reference, image, {1, 1, 1}).score);
 }
 
-TEST(HdrFlip, RefusesExposuresThatAreNone) {
+TEST(HdrFlip, RefusesExposuresThatAreNoneOrTooMany) {
   const Image image = flat({4, 4}, {1, 1, 1});
   const auto run = [&](Exposures exposures) { return [&, exposures] { run_hdr_flip(image, image, exposures); }; };
   using ::testing::HasSubstr;
   EXPECT_THAT(run({0, 1, 0}), ::testing::ThrowsMessage<Error>(HasSubstr("at least one")));
+  EXPECT_THAT(run({0, 1, 2000000000}), ::testing::ThrowsMessage<Error>(HasSubstr("at most 1000")));
   EXPECT_THAT(run({0, std::numeric_limits<double>::infinity(), 2}), ::testing::ThrowsMessage<Error>(HasSubstr("stops")));
+  EXPECT_THAT(run({-1e308, 1e308, 2}), ::testing::ThrowsMessage<Error>(HasSubstr("stops are not within -1000..1000")));
 }
 
 TEST(Flip, RefusesDistancesThatAreNone) {

@@ -40,8 +40,12 @@ TEST(Compare, RefusesWhatIsNoColor) {
   expect_refused({{of_type(QUELL_TYPE_DEPTH), gray(kSize, 0)}, {}, {}}, "the reference is depth of 4 x 3; metrics compare color");
   expect_refused({{gray(kSize, 0), test_ids(kSize, [](int, int) { return 1U; })}, {}, {}},
                  "the image is id of 4 x 3; metrics compare color");
-  expect_refused({{gray(kSize, 0), gray(kSize, 0)}, {}, of_type(QUELL_TYPE_MOMENTS)},
-                 "the motion is moments of 4 x 3; motion of two planes is needed");
+  const ImagePair pair{gray(kSize, 0), gray(kSize, 0)};
+  expect_refused({pair, ImagePair{of_type(QUELL_TYPE_ALBEDO), gray(kSize, 0)}, {}},
+                 "the reference of the frame before is albedo of 4 x 3; metrics compare color");
+  expect_refused({pair, ImagePair{gray(kSize, 0), of_type(QUELL_TYPE_ALBEDO)}, {}},
+                 "the image of the frame before is albedo of 4 x 3; metrics compare color");
+  expect_refused({pair, {}, of_type(QUELL_TYPE_MOMENTS)}, "the motion is moments of 4 x 3; motion of two planes is needed");
 }
 
 TEST(Compare, RefusesAPairOfOne) {
