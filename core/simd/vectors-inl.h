@@ -1,6 +1,9 @@
-// Vectors of pixels, and the functions that weights are made of, for kernels on Highway. Included once for every vector unit.
-// Formulas and error bounds: relative errors of the polynomials, to which a few roundings of float (6e-8 each) come.
-// Coefficients: own Remez fits. All of it breaks under -ffast-math.
+// Vectors of pixels, and the functions that weights are made of, for kernels on Highway. Included once for every vector unit,
+// after hwy/foreach_target.h; passes/README.md shows a kernel.
+//
+// Error bounds are relative and hold on every vector unit, roundings of float (6e-8 each) included; tests/core/simd compares each
+// with double precision over its whole domain. Coefficients are own fits: a minimax polynomial of the degree that is seen, on the
+// interval and with the weight that stand beside it, by Remez exchange in double precision. All of it breaks under -ffast-math.
 #if defined(QUELL_SIMD_VECTORS) == defined(HWY_TARGET_TOGGLE)
 #ifdef QUELL_SIMD_VECTORS
 #undef QUELL_SIMD_VECTORS
@@ -43,52 +46,88 @@ HWY_INLINE void store(V v, int count, float* to) {
   std::copy_n(buffer, count, to);
 }
 
+// Three planes likewise.
+HWY_INLINE void store(V3 v, int count, float* first, std::ptrdiff_t plane_stride) {
+  store(v.x, count, first), store(v.y, count, first + plane_stride), store(v.z, count, first + 2 * plane_stride);
+}
+
+// Offsets [first, last] of the taps of a window around `center` that lie in an image of that size.
+struct TapRange {
+  int first, last;
+};
+HWY_INLINE TapRange clamped_taps(int center, int radius, int size) {
+  return {std::max(-radius, -center), std::min(radius, size - 1 - center)};
+}
+
 HWY_INLINE V3 add(V3 a, V3 b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
 HWY_INLINE V3 sub(V3 a, V3 b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
 HWY_INLINE V3 mul(V a, V3 b) { return {hn::Mul(a, b.x), hn::Mul(a, b.y), hn::Mul(a, b.z)}; }
 HWY_INLINE V3 mul_add(V a, V3 b, V3 c) { return {hn::MulAdd(a, b.x, c.x), hn::MulAdd(a, b.y, c.y), hn::MulAdd(a, b.z, c.z)}; }
+HWY_INLINE V3 if_then_else(hn::Mask<D> mask, V3 yes, V3 no) {
+  return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
+}
 HWY_INLINE V dot(V3 a, V3 b) { return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::Mul(a.x, b.x))); }
 HWY_INLINE V dot_add(V3 a, V3 b, V c) { return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::MulAdd(a.x, b.x, c))); }
 
-// 2^-(gain e) for e >= 0; error 3.6e-6, exactly 1 at 0, exactly 0 where gain e > 126.5. `limit` is 127 / gain.
-// The fit is of 2^f on [-1/2, 1/2], the constant 1 held.
-HWY_INLINE V exp2_fraction(V f, V n) {
+// In 2^-e = 2^(f - n) with the nearest integer n, the fit is of 2^f on [-1/2, 1/2], relative, the constant 1 held. `biased` is n
+// as the last bits of a float: subtracting from kExponentRound rounds, and biases as an exponent is biased.
+constexpr float kExponentRound = 0x1.8p23F + 127.0F;
+HWY_INLINE V exp2_parts(V f, V biased) {
   const D d;
-  const hn::RebindToUnsigned<D> du;
   V p = set(9.782912553e-3F);
   p = hn::MulAdd(p, f, set(5.597688363e-2F));
   p = hn::MulAdd(p, f, set(2.402071108e-1F));
   p = hn::MulAdd(p, f, set(6.931136044e-1F));
   p = hn::MulAdd(p, f, set(1.0F));
-  return hn::Mul(p, hn::BitCast(d, hn::ShiftLeft<23>(hn::BitCast(du, n))));
+  return hn::Mul(p, hn::BitCast(d, hn::ShiftLeft<23>(hn::BitCast(hn::RebindToUnsigned<D>(), biased))));
 }
-constexpr float kRound = 0x1.8p23F + 127.0F;  // the last bits of a sum with it are the rounded integer, biased as an exponent
-HWY_INLINE V exp2_negative(V e, V gain, V limit) {
-  e = hn::Min(e, limit);
-  const V n = hn::NegMulAdd(gain, e, set(kRound));
-  return exp2_fraction(hn::NegMulAdd(gain, e, hn::Sub(set(kRound), n)), n);
-}
-// The same for a gain of 1.
+// 2^-e for e >= 0, infinity included; error 3.8e-6, exactly 1 at 0, exactly 0 from e = 126.5 on.
 HWY_INLINE V exp2_negative(V e) {
   e = hn::Min(e, set(127.0F));
-  const V n = hn::Sub(set(kRound), e);
-  return exp2_fraction(hn::Sub(hn::Sub(set(kRound), n), e), n);
+  const V biased = hn::Sub(set(kExponentRound), e);
+  return exp2_parts(hn::Sub(hn::Sub(set(kExponentRound), biased), e), biased);
+}
+// 2^-(gain e) likewise; `limit` is 127 / gain. To the error comes that of a rounded product, 6e-8 gain e, without fused
+// multiply-add.
+HWY_INLINE V exp2_negative(V e, V gain, V limit) {
+  e = hn::Min(e, limit);
+  const V biased = hn::NegMulAdd(gain, e, set(kExponentRound));
+  return exp2_parts(hn::NegMulAdd(gain, e, hn::Sub(set(kExponentRound), biased)), biased);
 }
 
-// Of linear colors with BT.709 primaries.
+// Of a linear color with BT.709 primaries; error 3e-7 for components that are at least 0.
 HWY_INLINE V luminance(V3 color) { return dot(color, {set(0.2126F), set(0.7152F), set(0.0722F)}); }
 
+// 1 / x for 1e-37 <= |x| <= 1e37, for a Newton step to go on from; error below 2^-11. That of Arm, 2^-8, has a step behind it.
+HWY_INLINE V estimate_reciprocal(V x) {
+  V r = hn::ApproximateReciprocal(x);
+#if HWY_ARCH_ARM
+  r = hn::MulAdd(r, hn::NegMulAdd(r, x, set(1.0F)), r);
+#endif
+  return r;
+}
+// 1 / x in that range; error 4e-7: a Newton step squares that of the estimate. Against a division: the same speed on 8 lanes, the
+// faster the more there are.
 HWY_INLINE V reciprocal(V x) {
-  const V r = hn::ApproximateReciprocal(x);
+  const V r = estimate_reciprocal(x);
   return hn::MulAdd(r, hn::NegMulAdd(r, x, set(1.0F)), r);
 }
 
-// factor -ln(1 - t)
-HWY_INLINE V minus_log_narrow(V t, V factor) {
-  V p = hn::Mul(factor, set(0.3463F));
+// max(x, 0)^128, by squaring seven times; error 8e-6 where the result is above 1e-30, and far below 1e-30 otherwise.
+HWY_INLINE V pow128(V x) {
+  x = hn::Max(x, zero());
+  for (int i = 0; i < 7; ++i) x = hn::Mul(x, x);
+  return x;
+}
+
+// e - factor ln(1 - t), so that 2^-it is a power of 1 - t = n.n'. With e = 0 and factor = k log2(e) for a k of 64 and more, that
+// power, (1 - t)^k, is within 1.5e-6 absolutely for t in [0, 2], where it counts as 0 from t = 1 on; roundings of t come to it
+// k-fold. The fit is of (1 - t)^64, absolute, the linear coefficient 1 held.
+HWY_INLINE V add_log_narrow(V t, V factor, V e) {
+  V p = hn::Mul(factor, set(3.463023e-1F));
   p = hn::MulAdd(p, t, hn::Mul(factor, set(0.5F)));
   p = hn::MulAdd(p, t, factor);
-  return hn::Mul(p, t);
+  return hn::MulAdd(p, t, e);
 }
 
 // The square of the angle between two normals is taken from chord = |n - n'|^2 = 2 - 2 n.n', which does not cancel where they are

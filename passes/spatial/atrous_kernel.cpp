@@ -3,8 +3,11 @@
 // not count (outside the image, no surface, not finite) have a color or a luminance so far from all others that their weight is
 // exactly 0. The loop over the taps is then the formula alone, without an edge or a mask in it.
 //
-// Error of a weight 2^-E, relative: 3.6e-6 (2^x) + 2e-7 E (roundings) + sigma_n 1.5e-7 (the cosine's roundings, svgf) +
-// 4.0e-6 E (angle, joint_bilateral). A result errs by at most twice that; so does a variance, twice.
+// Error of a weight h 2^-E, relative: 3.8e-6 (2^x) + 2e-7 E (roundings), with svgf + 1.5e-7 sigma_n (the cosine is a sum of
+// rounded products) + 6e-7 l / (sigma_l deviation) (so are luminances, whose difference counts), with joint_bilateral + 4.0e-6 E
+// (angle) + 2e-7 / sigma_plane sqrt(2 E) (the height over the plane is a difference). The pixel itself weighs 9/64, so that taps
+// of large E are outweighed, and a result errs by at most twice that, a variance by four times. With sigma_n = 128 and luminances
+// up to 40 sigma_l deviations that is 1e-4 at the very worst; roundings mostly cancel, and the tests see 1e-5.
 #include "passes/spatial/atrous_kernel.h"
 
 #include <algorithm>
@@ -38,17 +41,12 @@ inline Turn turn_at(int turn, int step, int height) {
   return {{longer + turn / shorter, shorter}, turn % shorter};
 }
 
-constexpr std::size_t magnitude(int offset) { return static_cast<std::size_t>(offset < 0 ? -offset : offset); }
-// Of the weight at an offset in steps: what is not a power of 2.
-constexpr float mantissa(int dx, int dy) { return kSpline[magnitude(dx)].mantissa * kSpline[magnitude(dy)].mantissa; }
-
 }  // namespace quell::atrous
 #endif
 
 HWY_BEFORE_NAMESPACE();
 namespace quell::atrous::HWY_NAMESPACE {
 
-constexpr int kMaxPlanes = 10;
 constexpr int kRowFloats = kMaxPlanes * kStride;
 
 // Where results go, and the columns [left, right) that are worked on.
@@ -56,14 +54,15 @@ struct Job {
   const FloatOutput& color;
   const FloatOutput& variance;
   int step, left, right;
-  float* memory;  // kRows rows with an apron of the taps' reach, one that does not count, and one of blurred variances
+  float* memory;  // kRows rows with an apron of the taps' reach, one that does not count, and one of what is prepared for a row
+                  // of results
 
   int apron() const { return (kReach * step + 15) / 16 * 16; }
   int tile_width() const { return kStride - 2 * apron() - 16; }  // the last vector may start at the last pixel
   // The pixel at `left` of row `index` of a phase.
   float* row(int index) const { return memory + (index + kRows) % kRows * kRowFloats + apron(); }
   float* outside_row() const { return memory + kRows * kRowFloats + apron(); }
-  float* blurred() const { return memory + (kRows + 1) * kRowFloats + 16; }
+  float* prepared() const { return memory + (kRows + 1) * kRowFloats + 16; }
 };
 
 // Lays [begin, end) of a row, counted from the tile's left, outside of the image.
@@ -91,98 +90,78 @@ struct Sums {
   V variance;
 };
 
-template <int kDx, int kDy, class AnyStops, class Pair>
-HWY_INLINE void add_tap(const AnyStops& stops, const typename AnyStops::Pixel& pixel, const Pair& pair, const float* tap,
-                        Sums& sums) {
-  const V start = set(stops.s.offset_exponents[magnitude(kDy)][magnitude(kDx)]);
-  V weight = exp2_negative(stops.exponent(pixel, pair, tap, start));
-  if constexpr (mantissa(kDx, kDy) != 1) weight = hn::Mul(weight, set(mantissa(kDx, kDy)));
+// Where the taps of a row of pixels begin; those of a pair lie opposite to each other.
+struct Taps {
+  std::array<const float*, 2 * kPairs.size()> first;
+  const float* center;
+};
+
+Taps find_taps(const Job& job, const Phase& phase, int index) {
+  const auto row = [&](int dy) {
+    const int tap = index + dy;
+    return tap >= 0 && tap < phase.count ? job.row(tap) : job.outside_row();
+  };
+  Taps taps{{}, job.row(index)};
+  for (std::size_t i = 0; i < kPairs.size(); ++i) {
+    const int dx = static_cast<int>(kPairs[i].dx) * job.step, dy = static_cast<int>(kPairs[i].dy);
+    taps.first[2 * i] = row(dy) + dx;
+    taps.first[2 * i + 1] = row(-dy) - dx;
+  }
+  return taps;
+}
+
+template <class AnyStops>
+HWY_INLINE void add_tap(V weight, const float* tap, Sums& sums) {
   sums.weight = hn::Add(sums.weight, weight);
   sums.color = mul_add(weight, at3(tap, 0), sums.color);
   sums.variance = hn::MulAdd(hn::Mul(weight, weight), at(tap, AnyStops::kVariance), sums.variance);
 }
 
-// Where the taps of a vector of pixels lie.
-struct Window {
-  const float* rows[kRows];
-  int step;
-};
-
-template <int kDx, int kDy, class AnyStops>
-HWY_INLINE void add_pair(const AnyStops& stops, const typename AnyStops::Pixel& pixel, const Window& window, Sums& sums) {
-  const auto pair = stops.template pair<kDx, kDy>(pixel);
-  add_tap<kDx, kDy>(stops, pixel, pair, window.rows[kReach + kDy] + kDx * window.step, sums);
-  add_tap<-kDx, -kDy>(stops, pixel, pair, window.rows[kReach - kDy] - kDx * window.step, sums);
-}
-
+// In three turns over all taps, the exponents and weights of which wait in memory: a tap's way from the first to the last
+// operation is so long that a processor cannot look far enough ahead to be busy with several.
 template <class AnyStops>
-HWY_INLINE Sums sum_taps(const AnyStops& stops, const typename AnyStops::Pixel& pixel, const Window& window) {
-  const float* center = window.rows[kReach];
-  const V own = set(mantissa(0, 0) / 16);
-  Sums sums{own, mul(own, at3(center, 0)), hn::Mul(hn::Mul(own, own), at(center, AnyStops::kVariance))};
-  add_pair<1, 0>(stops, pixel, window, sums);
-  add_pair<2, 0>(stops, pixel, window, sums);
-  add_pair<-2, 1>(stops, pixel, window, sums);
-  add_pair<-1, 1>(stops, pixel, window, sums);
-  add_pair<0, 1>(stops, pixel, window, sums);
-  add_pair<1, 1>(stops, pixel, window, sums);
-  add_pair<2, 1>(stops, pixel, window, sums);
-  add_pair<-2, 2>(stops, pixel, window, sums);
-  add_pair<-1, 2>(stops, pixel, window, sums);
-  add_pair<0, 2>(stops, pixel, window, sums);
-  add_pair<1, 2>(stops, pixel, window, sums);
-  add_pair<2, 2>(stops, pixel, window, sums);
-  return sums;
-}
-
-template <class AnyStops>
-void filter_row(const AnyStops& stops, const Job& job, const Phase& phase, int index, const float* blurred) {
-  const int y = phase.first + index * job.step;
-  Window window{{}, job.step};
-  for (int j = 0; j < kRows; ++j) {
-    const int tap = index + j - kReach;
-    window.rows[j] = tap >= 0 && tap < phase.count ? job.row(tap) : job.outside_row();
+HWY_INLINE Sums sum_taps(const AnyStops& stops, const typename AnyStops::Pixel& pixel, const Taps& taps, int x) {
+  const D d;
+  HWY_ALIGN float weights[2 * kPairs.size() * kMaxLanes];
+  for (std::size_t i = 0; i < kPairs.size(); ++i) {
+    const auto pair = stops.pair(pixel, i);
+    float* to = weights + 2 * i * kMaxLanes;
+    hn::Store(stops.exponent(pixel, pair, taps.first[2 * i] + x, i), d, to);
+    hn::Store(stops.exponent(pixel, pair, taps.first[2 * i + 1] + x, i), d, to + kMaxLanes);
   }
+  for (std::size_t i = 0; i < kPairs.size(); ++i) {
+    float* at = weights + 2 * i * kMaxLanes;
+    const V h = set(kPairs[i].h);
+    hn::Store(hn::Mul(exp2_negative(hn::Load(d, at)), h), d, at);
+    hn::Store(hn::Mul(exp2_negative(hn::Load(d, at + kMaxLanes)), h), d, at + kMaxLanes);
+  }
+  const V own = set(kB3[0] * kB3[0]);
+  Sums a{own, mul(own, at3(taps.center + x, 0)), hn::Mul(hn::Mul(own, own), at(taps.center + x, AnyStops::kVariance))};
+  Sums b{zero(), zero3(), zero()};
+  for (std::size_t i = 0; i < 2 * kPairs.size(); i += 2) {
+    add_tap<AnyStops>(hn::Load(d, weights + i * kMaxLanes), taps.first[i] + x, a);
+    add_tap<AnyStops>(hn::Load(d, weights + (i + 1) * kMaxLanes), taps.first[i + 1] + x, b);
+  }
+  return {hn::Add(a.weight, b.weight), add(a.color, b.color), hn::Add(a.variance, b.variance)};
+}
+
+template <class AnyStops>
+void filter_row(const AnyStops& stops, const Job& job, const Phase& phase, int index) {
+  const int y = phase.first + index * job.step;
+  const Taps taps = find_taps(job, phase, index);
+  stops.prepare(taps.center, job.left, job.right, y, job.prepared());
   for (int x = job.left; x < job.right; x += lanes()) {
-    const float* center = window.rows[kReach];
-    const Sums sums = sum_taps(stops, stops.pixel(center, blurred, x, y), window);
+    const int column = x - job.left;
+    const float* center = taps.center + column;
+    const Sums sums = sum_taps(stops, stops.pixel(center, job.prepared() + column), taps, column);
     const V scale = hn::Div(set(1.0F), sums.weight);
     const Mask counts = hn::Lt(at(center, AnyStops::kCarrier), set(kFar));
     const V3 own = pixels3(stops.in.color, x, y);
     const V own_variance = stops.in.variance ? pixels(stops.in.variance, x, y) : zero();
     const int count = job.right - x;
-    store(hn::IfThenElse(counts, hn::Mul(sums.color.x, scale), own.x), count, job.color.row(y, 0) + x);
-    store(hn::IfThenElse(counts, hn::Mul(sums.color.y, scale), own.y), count, job.color.row(y, 1) + x);
-    store(hn::IfThenElse(counts, hn::Mul(sums.color.z, scale), own.z), count, job.color.row(y, 2) + x);
+    store(if_then_else(counts, mul(scale, sums.color), own), count, job.color.row(y) + x, job.color.plane_stride);
     store(hn::IfThenElse(counts, hn::Mul(sums.variance, hn::Mul(scale, scale)), own_variance), count, job.variance.row(y) + x);
-    for (const float*& row : window.rows) row += lanes();
-    if (blurred) blurred += lanes();
   }
-}
-
-// Row y of the variance, blurred by 1/4, 1/2, 1/4 in both directions; weights of pixels in the image alone.
-const float* blur_row(const FloatImage& variance, const Job& job, int y) {
-  // A neighbor outside that leaves the mean to those inside.
-  const auto mirror = [](float border, float inner) { return (2 * border + inner) / 3; };
-  const auto column = [&](int x) {
-    const float middle = variance.at(x, y);
-    const bool above = y > 0, below = y + 1 < variance.height;
-    const float before = above ? variance.at(x, y - 1) : below ? mirror(middle, variance.at(x, y + 1)) : middle;
-    const float after = below ? variance.at(x, y + 1) : above ? mirror(middle, variance.at(x, y - 1)) : middle;
-    return (before + 2 * middle + after) / 4;
-  };
-  float* blurred = job.blurred();
-  float* columns = blurred + kStride;
-  const int x0 = std::max(0, job.left - 1), x1 = std::min(variance.width, job.right + 1);
-  for (int x = x0; x < x1; ++x) columns[x - job.left] = column(x);
-  const int last = variance.width - 1;
-  if (job.left == 0) columns[-1] = last > 0 ? mirror(columns[0], columns[1]) : columns[0];
-  if (job.right > last)
-    columns[last + 1 - job.left] = last > job.left ? mirror(columns[last - job.left], columns[last - 1 - job.left])
-                                   : last > 0      ? mirror(columns[0], columns[-1])
-                                                   : columns[0];
-  for (int x = 0; x < job.right - job.left; ++x) blurred[x] = (columns[x - 1] + 2 * columns[x] + columns[x + 1]) / 4;
-  return blurred;
 }
 
 // Rows [begin, end) of a phase.
@@ -194,15 +173,7 @@ void filter_tile(const AnyStops& stops, const Job& job, const Phase& phase, int 
   for (int index = begin - kReach; index < begin + kReach; ++index) gather(index);
   for (int index = begin; index < end; ++index) {
     gather(index + kReach);
-    const int y = phase.first + index * job.step;
-    const float* blurred = nullptr;
-    if (stops.s.stops == Stops::svgf) {
-      if (stops.in.blurred_variance)
-        blurred = stops.in.blurred_variance.row(y) + job.left;
-      else if (stops.in.variance)
-        blurred = blur_row(stops.in.variance, job, y);
-    }
-    filter_row(stops, job, phase, index, blurred);
+    filter_row(stops, job, phase, index);
   }
 }
 
@@ -242,7 +213,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace quell::atrous {
 
-std::size_t scratch_bytes() { return (kRows + 2) * std::size_t{10 * 1040} * sizeof(float); }
+std::size_t scratch_bytes() { return std::size_t{(kRows + 2) * kMaxPlanes * kStride} * sizeof(float); }
 
 HWY_EXPORT(FilterTurns);
 

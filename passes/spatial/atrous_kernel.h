@@ -25,10 +25,10 @@ struct Settings {
   /// For dammertz and joint_bilateral e = gain (squared distance of color + the terms below) + offset_exponents, so that each
   /// factor is relative to that of color. `gain` is above 0.
   float gain = 1;
-  float normal_factor = 0;                                 ///< of the squared distance or angle of normals
-  float position_factor = 0;                               ///< dammertz: of the squared distance of positions
-  float plane_factor = 0;                                  ///< joint_bilateral: it scales a length, not its square
-  std::array<std::array<float, 3>, 3> offset_exponents{};  ///< [|dy|][|dx|], in steps: what depends on the offset alone
+  float normal_factor = 0;                   ///< of the squared distance or angle of normals
+  float position_factor = 0;                 ///< dammertz: of the squared distance of positions
+  float plane_factor = 0;                    ///< joint_bilateral: it scales a length, not its square
+  std::array<float, 12> offset_exponents{};  ///< by pair: what depends on the offset alone
 
   /// For svgf, where each is for e itself.
   float slope_factor = 0;      ///< of the depth's gradient; it and the next are in a denominator
@@ -45,14 +45,32 @@ inline constexpr double kSmallestNarrowPower = 64;
 inline constexpr double kLargestNarrowSigma = 0.2;
 inline constexpr int kLargestLevel = 7;
 
-/// The B3 spline's weights at 0, 1 and 2 steps are mantissa 2^-exponent.
-struct SplineWeight {
-  float mantissa;
-  int exponent;
-};
-inline constexpr std::array<SplineWeight, 3> kSpline{{{1.5F, 2}, {1, 2}, {1, 4}}};
+/// The B3 spline's weights at 0, 1 and 2 steps.
+inline constexpr std::array<float, 3> kB3{3.0F / 8, 1.0F / 4, 1.0F / 16};
 
-/// Bytes of memory that filter_rows works in.
+/// An offset in steps; the taps at it and at its opposite are a pair. All pairs and the pixel itself make the 5 x 5 taps.
+struct Offset {
+  float dx, dy, h, length;
+};
+inline constexpr std::array<Offset, 12> kPairs{{{1, 0, kB3[1] * kB3[0], 1},
+                                                {2, 0, kB3[2] * kB3[0], 2},
+                                                {-2, 1, kB3[2] * kB3[1], 2.23606798F},
+                                                {-1, 1, kB3[1] * kB3[1], 1.41421356F},
+                                                {0, 1, kB3[0] * kB3[1], 1},
+                                                {1, 1, kB3[1] * kB3[1], 1.41421356F},
+                                                {2, 1, kB3[2] * kB3[1], 2.23606798F},
+                                                {-2, 2, kB3[2] * kB3[2], 2.82842712F},
+                                                {-1, 2, kB3[1] * kB3[2], 2.23606798F},
+                                                {0, 2, kB3[0] * kB3[2], 2},
+                                                {1, 2, kB3[1] * kB3[2], 2.23606798F},
+                                                {2, 2, kB3[2] * kB3[2], 2.82842712F}}};
+
+/// Scratch memory holds rows of planes, with these floats from a plane to the next. Not a multiple of 4 kB, or all planes would
+/// compete for the same lines of the first-level cache.
+inline constexpr int kStride = 1040;
+inline constexpr int kMaxPlanes = 10;
+
+/// Bytes of memory that filter_turns works in.
 std::size_t scratch_bytes();
 
 /// Each row has its turn: those that are `step` apart follow each other, and share the rows that they read. Filters the rows of

@@ -9,6 +9,8 @@
 
 #include <hwy/contrib/math/math-inl.h>
 
+#include <algorithm>
+
 #include "passes/spatial/atrous_kernel.h"
 #include "quell/simd/vectors-inl.h"
 
@@ -16,9 +18,6 @@ HWY_BEFORE_NAMESPACE();
 namespace quell::atrous::HWY_NAMESPACE {
 using namespace simd::HWY_NAMESPACE;  // NOLINT: the vocabulary of kernels
 
-// Floats from a plane to the next. Not a multiple of 4 kB, or all planes would compete for the same lines of the first-level
-// cache.
-constexpr int kStride = 1040;
 constexpr float kFar = 1e18F;    // in the carrier: a tap that does not count; its square is still finite
 constexpr float kTiny = 1e-36F;  // added to squared distances, which are then never 0
 constexpr float kNoSurface = QUELL_NO_SURFACE_DEPTH;
@@ -53,7 +52,7 @@ struct SvgfStops {
   const Images& in;
   const Settings& s;
 
-  // Stores what a tap at the pixels from x on is made of, besides its color.
+  // Stores what taps at the pixels from x on are made of.
   HWY_INLINE void gather(Mask counts, V3 color, int x, int y, float* to) const {
     const V3 normal = in.normal ? pixels3(in.normal, x, y) : V3{zero(), zero(), set(1.0F)};
     if (in.normal) counts = hn::And(counts, is_surface(normal));
@@ -68,67 +67,100 @@ struct SvgfStops {
     put(hn::IfThenElse(counts, luminance(color), set(kFar)), to, kCarrier);
   }
 
+  // Computes what pixel() needs of the pixels [left, right) of row y, which is gathered at `center`. Beforehand, since a root and
+  // a quotient that the first tap waited for would hold up the others.
+  void prepare(const float* center, int left, int right, int y, float* to) const {
+    if (in.variance && !in.blurred_variance) blur_columns(left, right, y, to + kColumns * kStride);
+    for (int x = left; x < right; x += lanes(), center += lanes(), to += lanes()) {
+      put(luminance_gain(to + kColumns * kStride, x, y), to, kGain);
+      if constexpr (kScalarGradient) {
+        put(hn::Mul(hn::Abs(pixels(in.depth_gradient, x, y)), set(s.slope_factor)), to, kSlope);
+      } else {
+        const V depth = at(center, kDepth);
+        put(slope(depth, at(center - 1, kDepth), at(center + 1, kDepth)), to, kSlope);
+        put(slope(depth, depth_at(x, y - 1), depth_at(x, y + 1)), to, kSlope + 1);
+      }
+    }
+  }
+
   // What is the same for all taps of a pixel.
   struct Pixel {
-    V luminance, luminance_gain, depth, slope_x, slope_y, eps;
+    V luminance, luminance_gain, depth, eps, slope_x, slope_y;
     V3 minus_normal;
   };
-
-  // `deviation_variance` is what the luminance's deviation comes from.
-  HWY_INLINE Pixel pixel(const float* center, const float* blurred, int x, int y) const {
-    Pixel p;
-    p.luminance = at(center, kCarrier);
-    p.luminance_gain = luminance_gain(blurred);
-    p.depth = at(center, kDepth);
-    p.minus_normal = sub(zero3(), at3(center, kNormal));
-    p.eps = hn::Max(hn::Mul(hn::Abs(p.depth), set(s.depth_eps)), set(1e-15F));
-    if constexpr (kScalarGradient) {
-      p.slope_x = p.slope_y = hn::Mul(hn::Abs(pixels(in.depth_gradient, x, y)), set(s.slope_factor));
-    } else {
-      p.slope_x = hn::Mul(difference(p.depth, at(center - 1, kDepth), at(center + 1, kDepth)), set(s.slope_factor));
-      p.slope_y = hn::Mul(difference(p.depth, depth_at(x, y - 1), depth_at(x, y + 1)), set(s.slope_factor));
-    }
-    return p;
+  HWY_INLINE Pixel pixel(const float* center, const float* prepared) const {
+    const V depth = at(center, kDepth);
+    const V eps = hn::Max(hn::Mul(hn::Abs(depth), set(s.depth_eps)), set(1e-15F));
+    return {at(center, kCarrier),
+            at(prepared, kGain),
+            depth,
+            eps,
+            at(prepared, kSlope),
+            at(prepared, kSlope + 1),
+            sub(zero3(), at3(center, kNormal))};
   }
 
   // What a tap has in common with the one opposite to it: the gain of a difference in depth.
-  template <int kDx, int kDy>
-  HWY_INLINE V pair(const Pixel& p) const {
+  HWY_INLINE V pair(const Pixel& p, std::size_t i) const {
     if constexpr (kScalarGradient) {
-      constexpr std::array<float, 9> kLengths{0, 1, 1.41421356F, 0, 2, 2.23606798F, 0, 0, 2.82842712F};
-      return reciprocal(hn::MulAdd(p.slope_x, set(kLengths[kDx * kDx + kDy * kDy]), p.eps));
+      return reciprocal(hn::MulAdd(p.slope_x, set(kPairs[i].length), p.eps));
     } else {
-      const V change = hn::MulAdd(p.slope_x, set(kDx), hn::Mul(p.slope_y, set(kDy)));
+      const V change = hn::MulAdd(p.slope_x, set(kPairs[i].dx), hn::Mul(p.slope_y, set(kPairs[i].dy)));
       return reciprocal(hn::Add(hn::Abs(change), p.eps));
     }
   }
 
-  HWY_INLINE V exponent(const Pixel& p, V depth_gain, const float* tap, V e) const {
-    e = hn::MulAdd(hn::Abs(hn::Sub(at(tap, kCarrier), p.luminance)), p.luminance_gain, e);
+  HWY_INLINE V exponent(const Pixel& p, V depth_gain, const float* tap, std::size_t) const {
+    V e = hn::Mul(hn::Abs(hn::Sub(at(tap, kCarrier), p.luminance)), p.luminance_gain);
     e = hn::MulAdd(hn::Abs(hn::Sub(at(tap, kDepth), p.depth)), depth_gain, e);
     const V t = dot_add(p.minus_normal, at3(tap, kNormal), set(1.0F));  // 1 - n.n'
     if constexpr (kWideNormals)
       return hn::NegMulAdd(set(s.normal_power), hn::Log(D(), hn::Max(hn::Sub(set(1.0F), t), set(1e-37F))), e);
     else
-      return hn::Add(minus_log_narrow(t, set(s.normal_power)), e);
+      return add_log_narrow(t, set(s.normal_power), e);
   }
 
  private:
+  static constexpr int kGain = 0, kSlope = 1, kColumns = 3;  // what is prepared
+
   HWY_INLINE V depth_at(int x, int y) const {
     return in.depth && y >= 0 && y < in.depth.height ? pixels(in.depth, x, y) : set(kNoSurface);
   }
-  // The smaller of the differences to both sides; neighbors without surface have none.
-  static HWY_INLINE V difference(V middle, V before, V after) {
+  // Of the smaller of the differences to both sides; neighbors without surface have none.
+  HWY_INLINE V slope(V middle, V before, V after) const {
     const V none = set(kNoSurface);
-    V back = hn::Sub(middle, before), ahead = hn::Sub(after, middle);
-    back = hn::IfThenElse(hn::Lt(hn::Abs(before), none), back, none);
-    ahead = hn::IfThenElse(hn::Lt(hn::Abs(after), none), ahead, none);
+    const V back = hn::IfThenElse(hn::Lt(hn::Abs(before), none), hn::Sub(middle, before), none);
+    const V ahead = hn::IfThenElse(hn::Lt(hn::Abs(after), none), hn::Sub(after, middle), none);
     const V smaller = hn::IfThenElse(hn::Lt(hn::Abs(ahead), hn::Abs(back)), ahead, back);
-    return hn::IfThenElseZero(hn::Lt(hn::Abs(smaller), none), smaller);
+    return hn::IfThenElseZero(hn::Lt(hn::Abs(smaller), none), hn::Mul(smaller, set(s.slope_factor)));
   }
-  HWY_INLINE V luminance_gain(const float* variance) const {
-    if (!variance) return set(kNoGain);
-    const V deviation = hn::Sqrt(hn::Max(hn::LoadU(D(), variance), zero()));
+
+  // The variance is blurred by 1/4, 1/2, 1/4 down the columns, and then along the row. A neighbor outside of the image is made up
+  // so that the mean is that of those inside.
+  static HWY_INLINE V made_up(V border, V inner) { return hn::MulAdd(border, set(2.0F / 3), hn::Mul(inner, set(1.0F / 3))); }
+  static HWY_INLINE V blur(V before, V middle, V after) {
+    return hn::MulAdd(middle, set(0.5F), hn::Mul(hn::Add(before, after), set(0.25F)));
+  }
+  // Pixels [left - 1, right] of row y; left is at `to`.
+  void blur_columns(int left, int right, int y, float* to) const {
+    const FloatImage& image = in.variance;
+    const bool above = y > 0, below = y + 1 < image.height;
+    for (int x = std::max(0, left - 1); x < std::min(image.width, right + 1); x += lanes()) {
+      const V middle = pixels(image, x, y);
+      const V up = above ? pixels(image, x, y - 1) : middle, down = below ? pixels(image, x, y + 1) : middle;
+      hn::StoreU(blur(above ? up : made_up(middle, down), middle, below ? down : made_up(middle, up)), D(), to + (x - left));
+    }
+    const int last = image.width - 1 - left;
+    const auto make_up = [to](int border, int inner) { return (2 * to[border] + to[inner]) / 3; };
+    if (left == 0) to[-1] = make_up(0, std::min(1, last));
+    if (right == image.width) to[last + 1] = make_up(last, image.width > 1 ? last - 1 : last);
+  }
+  HWY_INLINE V luminance_gain(const float* columns, int x, int y) const {
+    if (!in.variance && !in.blurred_variance) return set(kNoGain);
+    const V variance = in.blurred_variance
+                           ? pixels(in.blurred_variance, x, y)
+                           : blur(hn::LoadU(D(), columns - 1), hn::LoadU(D(), columns), hn::LoadU(D(), columns + 1));
+    const V deviation = hn::Sqrt(hn::Max(variance, zero()));
     return hn::Max(hn::Div(set(1.0F), hn::MulAdd(deviation, set(s.luminance_factor), set(1e-8F * kLn2))), set(kNoGain));
   }
 };
@@ -155,20 +187,19 @@ struct GuidedStops {
     put(hn::IfThenElseZero(counts, variance), to, kVariance);
   }
 
+  void prepare(const float*, int, int, int, float*) const {}
+
   struct Pixel {
     V3 color, normal, position, plane;
   };
-  HWY_INLINE Pixel pixel(const float* center, const float*, int, int) const {
+  HWY_INLINE Pixel pixel(const float* center, const float*) const {
     const V3 normal = at3(center, kNormal);
     return {at3(center, 0), normal, at3(center, kPosition), mul(set(s.plane_factor), normal)};
   }
   struct Nothing {};
-  template <int kDx, int kDy>
-  HWY_INLINE Nothing pair(const Pixel&) const {
-    return {};
-  }
+  HWY_INLINE Nothing pair(const Pixel&, std::size_t) const { return {}; }
 
-  HWY_INLINE V exponent(const Pixel& p, Nothing, const float* tap, V e) const {
+  HWY_INLINE V exponent(const Pixel& p, Nothing, const float* tap, std::size_t i) const {
     const V3 contrast = sub(at3(tap, 0), p.color), turn = sub(at3(tap, kNormal), p.normal);
     const V3 way = sub(at3(tap, kPosition), p.position);
     const V chord = dot(turn, turn), squared_distance = dot_add(way, way, set(kTiny));
@@ -183,7 +214,7 @@ struct GuidedStops {
       else
         sum = hn::MulAdd(angle_ratio_narrow(chord, set(s.normal_factor)), chord, sum);
     }
-    return hn::MulAdd(sum, set(s.gain), e);
+    return hn::MulAdd(sum, set(s.gain), set(s.offset_exponents[i]));
   }
 };
 

@@ -5,7 +5,7 @@
 //          homework 5, for this set of terms.
 // Departs: the angle of two normals is taken from their difference, not from acos(n.n'), which loses all digits where they are
 //          close; for unit normals it is the same. A pixel without surface counts for no other and keeps its color.
-// Cost:    (2 radius + 1)^2 taps a pixel, each 43 vector operations with all terms, one of them a division.
+// Cost:    (2 radius + 1)^2 taps a pixel, each 45 vector operations with all terms, none of them a division.
 #include <cmath>
 #include <stdexcept>
 
@@ -26,7 +26,7 @@ struct Params {
   double sigma_normal = 0.1;
   double sigma_plane = 0.1;
   void describe(auto&& field) {
-    field("radius", radius, Range<int>{0, 64}, "px", "The window is 2 radius + 1 pixels wide and high.");
+    field("radius", radius, Range<int>{0, joint_bilateral::kMaxRadius}, "px", "The window is 2 radius + 1 pixels wide and high.");
     field("coord", coord,
           Choices{{"pixels", "distance in the image, as the published formula has it"},
                   {"world", "distance of the positions, as the published listing has it; needs position"}},

@@ -2,10 +2,10 @@
 // count (outside the image, no surface, not finite) have a color so far from all others that their weight is exactly 0. The loop
 // over the taps is then the formula alone, without an edge or a mask in it.
 //
-// Error of a weight exp(-E), relative: 3.6e-6 (2^x) + 4.0e-6 E (angle) + 2e-7 E (roundings) + 2e-7 / sigma_plane sqrt(2 E) (the
-// height over the plane is a difference). The center weighs 1, so that taps of large E are outweighed: a window of 33 x 33 taps
-// of equal E is worst at E = 6, with 2.6e-5 where sigma_plane is 0.1. A result errs by at most twice that. Limits: colors below
-// 1e18, positions below 1e9; points closer than 1e-15 coincide.
+// Error of a weight exp(-E), relative: 3.6e-6 (2^x) + 4.0e-6 E (angle) + 4e-7 E (roundings, reciprocal) + 2e-7 / sigma_plane
+// sqrt(2 E) (the height over the plane is a difference). The center weighs 1, so that taps of large E are outweighed: a window of
+// 33 x 33 taps of equal E is worst at E = 6, with 2.6e-5 where sigma_plane is 0.1. A result errs by at most twice that. Limits:
+// colors below 1e18, positions below 1e9; points closer than 1e-15 coincide.
 #include "passes/spatial/joint_bilateral_kernel.h"
 
 #include <algorithm>
@@ -21,11 +21,14 @@
 #define QUELL_JOINT_BILATERAL_SHARED
 namespace quell::joint_bilateral {
 
-constexpr int kTileWidth = 128, kTileHeight = 8;  // px; with radius 16 a tile is 270 kB and stays in the second-level cache
-constexpr int kPlanes = 9;                        // color, normal, position
-constexpr int kNormal = 3, kPosition = 6;         // the first plane of each
-constexpr float kFar = 1e18F;                     // red of a tap that does not count; its square is still finite
-constexpr float kTiny = 1e-36F;                   // added to squared distances, which are then never 0
+constexpr int kTileWidth = 128, kTileHeight = 8;  // px; with radius 16 a tile is 230 kB and stays in the second-level cache
+// Floats from a plane to the next in a tile: its width, its apron, and a vector that starts at the last pixel. One for all radii:
+// an address is then a row and a constant.
+constexpr int kStride = kTileWidth + 2 * kMaxRadius + 16;
+constexpr int kPlanes = 9;                 // color, normal, position
+constexpr int kNormal = 3, kPosition = 6;  // the first plane of each
+constexpr float kFar = 1e18F;              // red of a tap that does not count; its square is still finite
+constexpr float kTiny = 1e-36F;            // added to squared distances, which are then never 0
 
 // Which terms a weight has, besides those of color and of the distance in pixels.
 struct Terms {
@@ -35,12 +38,9 @@ struct Terms {
 // Rows from `top` on, each of kPlanes planes one after the other, from pixel `left` on, in the coordinates of the image.
 struct Tile {
   float* data;
-  int stride, left, top;
-  float* at(int x, int y) const { return data + static_cast<std::ptrdiff_t>(y - top) * kPlanes * stride + (x - left); }
+  int left, top;
+  float* at(int x, int y) const { return data + static_cast<std::ptrdiff_t>(y - top) * kPlanes * kStride + (x - left); }
 };
-
-// A row of a plane: the tile, its apron, and a vector that starts at the last pixel.
-constexpr int tile_stride(int radius) { return (kTileWidth + 2 * radius + 16 + 15) / 16 * 16; }
 
 }  // namespace quell::joint_bilateral
 #endif
@@ -53,11 +53,13 @@ using Mask = hn::Mask<D>;
 
 HWY_INLINE Mask is_finite(V3 v) { return hn::Eq(dot(v, {zero(), zero(), zero()}), zero()); }
 
-HWY_INLINE void put(Mask counts, V3 v, float* to, int stride) {
+// Three planes of a tile, from that of `first` on.
+HWY_INLINE V3 get(const float* first) { return load(first, kStride); }
+HWY_INLINE void put(Mask counts, V3 v, float* to) {
   const D d;
   hn::StoreU(hn::IfThenElseZero(counts, v.x), d, to);
-  hn::StoreU(hn::IfThenElseZero(counts, v.y), d, to + stride);
-  hn::StoreU(hn::IfThenElseZero(counts, v.z), d, to + 2 * stride);
+  hn::StoreU(hn::IfThenElseZero(counts, v.y), d, to + kStride);
+  hn::StoreU(hn::IfThenElseZero(counts, v.z), d, to + 2 * kStride);
 }
 
 // Copies pixels [x0, x1) of row y into the tile.
@@ -76,21 +78,26 @@ void gather_row(const Images& in, int y, int x0, int x1, const Tile& tile) {
       position = load(in.position.row(y) + x, in.position.plane_stride);
       counts = hn::And(counts, is_finite(position));
     }
-    put(counts, color, to, tile.stride);
+    put(counts, color, to);
     hn::StoreU(hn::IfThenElse(counts, color.x, set(kFar)), d, to);
-    if constexpr (kTerms.normal) put(counts, normal, to + kNormal * tile.stride, tile.stride);
-    if constexpr (kTerms.position) put(counts, position, to + kPosition * tile.stride, tile.stride);
+    if constexpr (kTerms.normal) put(counts, normal, to + kNormal * kStride);
+    if constexpr (kTerms.position) put(counts, position, to + kPosition * kStride);
   }
+}
+
+// Lays pixels [x0, x1) of a row outside of the image.
+inline void fill_outside(int x0, int x1, int y, const Tile& tile) {
+  for (int plane = 0; plane < kPlanes && x0 < x1; ++plane)
+    std::fill_n(tile.at(x0, y) + plane * kStride, x1 - x0, plane == 0 ? kFar : 0.0F);
 }
 
 // Fills the rows of the tile that lie in the image.
 template <Terms kTerms>
 void gather(const Images& in, int radius, int y0, int y1, const Tile& tile) {
-  const int x0 = std::max(0, tile.left), x1 = std::min(in.color.width, tile.left + kTileWidth + 2 * radius);
+  const int end = tile.left + kTileWidth + 2 * radius, x0 = std::max(0, tile.left), x1 = std::min(in.color.width, end);
   for (int y = std::max(0, y0 - radius); y < std::min(in.color.height, y1 + radius); ++y) {
-    float* row = tile.at(tile.left, y);
-    std::fill_n(row, tile.stride, kFar);
-    std::fill_n(row + tile.stride, (kPlanes - 1) * tile.stride, 0.0F);
+    fill_outside(tile.left, x0, y, tile);
+    fill_outside(x1, end + kMaxLanes, y, tile);
     gather_row<kTerms>(in, y, x0, x1, tile);
   }
 }
@@ -101,60 +108,106 @@ struct Sums {
   V3 color;
 };
 
+// What the weights of a pixel's taps are made of besides the taps.
+struct Center {
+  V3 color, normal, position, plane;
+};
+
+template <Terms kTerms>
+Center load_center(const Settings& s, const float* pixel) {
+  Center center{};
+  center.color = get(pixel);
+  if constexpr (kTerms.normal) center.normal = get(pixel + kNormal * kStride);
+  if constexpr (kTerms.normal) center.plane = mul(set(s.plane_factor), center.normal);
+  if constexpr (kTerms.position) center.position = get(pixel + kPosition * kStride);
+  return center;
+}
+
+// In what a tap differs from the center.
+struct Differences {
+  V color;                     // squared distance of color, and the part of the exponent that depends on the distance in pixels
+  V chord;                     // squared distance of normals
+  V height, squared_distance;  // of positions: over the plane, scaled, and in all
+};
+
+template <Terms kTerms>
+HWY_INLINE Differences find_differences(const Center& center, const float* tap, float pixel_distance) {
+  Differences d{};
+  if constexpr (kTerms.position) {
+    const V3 way = sub(center.position, get(tap + kPosition * kStride));
+    if constexpr (kTerms.normal) d.height = dot(way, center.plane);
+    d.squared_distance = dot_add(way, way, set(kTiny));
+  }
+  if constexpr (kTerms.normal) {
+    const V3 turn = sub(center.normal, get(tap + kNormal * kStride));
+    d.chord = dot(turn, turn);
+  }
+  const V3 contrast = sub(center.color, get(tap));
+  d.color = dot_add(contrast, contrast, set(pixel_distance));
+  return d;
+}
+
+template <Terms kTerms>
+HWY_INLINE V find_exponent(const Settings& s, const Differences& d) {
+  V e = d.color;
+  if constexpr (kTerms.position) e = hn::MulAdd(d.squared_distance, set(s.position_factor), e);
+  if constexpr (kTerms.position && kTerms.normal) {
+    // height^2 / distance^2, by an estimate r of 1 / distance^2 and a step of Newton's: (height r) (height (2 - distance^2 r))
+    const V r = estimate_reciprocal(d.squared_distance);
+    const V rest = hn::NegMulAdd(d.squared_distance, r, set(2.0F));
+    e = hn::MulAdd(hn::Mul(d.height, r), hn::Mul(d.height, rest), e);
+  }
+  if constexpr (kTerms.wide_normals)
+    e = hn::MulAdd(squared_angle_wide(d.chord), set(s.normal_factor), e);
+  else if constexpr (kTerms.normal)
+    e = hn::MulAdd(angle_ratio_narrow(d.chord, set(s.normal_factor)), d.chord, e);
+  return e;
+}
+
+HWY_INLINE void add_tap(const Settings& s, V e, const float* tap, Sums& sums) {
+  const V weight = exp2_negative(e, set(s.gain), set(127.0F / s.gain));
+  sums.weight = hn::Add(sums.weight, weight);
+  sums.color = mul_add(weight, get(tap), sums.color);
+}
+
 // The taps of one row, the leftmost at `tap`, for the pixels at `center`.
 template <Terms kTerms>
-HWY_INLINE Sums sum_taps(const Settings& s, const float* center, const float* tap, const float* distances, int stride) {
-  const V gain = set(s.gain), limit = set(127.0F / s.gain);
-  const V normal_factor = set(s.normal_factor), position_factor = set(s.position_factor);
-  const V3 color0 = load(center, stride), normal0 = load(center + kNormal * stride, stride);
-  const V3 position0 = load(center + kPosition * stride, stride), plane0 = mul(set(s.plane_factor), normal0);
+HWY_INLINE Sums sum_taps(const Settings& s, const Center& center, const float* tap, const float* distances) {
   Sums sums{zero(), {zero(), zero(), zero()}};
-  for (int i = 0; i <= 2 * s.radius; ++i, ++tap) {
-    // The plane term comes first and is added last: its division takes as long as the other terms together.
-    V squared_distance = zero(), plane_term = zero();
-    if constexpr (kTerms.position) {
-      const V3 way = sub(load(tap + kPosition * stride, stride), position0);
-      const V height = dot(way, plane0);
-      squared_distance = dot_add(way, way, set(kTiny));
-      plane_term = hn::Div(hn::Mul(height, height), squared_distance);
-    }
-    const V3 color = load(tap, stride), contrast = sub(color, color0);
-    V e = dot_add(contrast, contrast, set(distances[i]));
-    if constexpr (kTerms.normal) {
-      const V3 turn = sub(load(tap + kNormal * stride, stride), normal0);
-      const V chord = dot(turn, turn);
-      if constexpr (kTerms.wide_normals)
-        e = hn::MulAdd(squared_angle_wide(chord), normal_factor, e);
-      else
-        e = hn::MulAdd(angle_ratio_narrow(chord, normal_factor), chord, e);
-    }
-    if constexpr (kTerms.position) e = hn::Add(hn::MulAdd(squared_distance, position_factor, e), plane_term);
-    const V weight = exp2_negative(e, gain, limit);
-    sums.weight = hn::Add(sums.weight, weight);
-    sums.color = mul_add(weight, color, sums.color);
+  // Each round ends one tap, is in the midst of the next, and begins the one after that: the results that a tap would otherwise
+  // wait for are there when it goes on.
+  const auto begin = [&](int i) { return find_differences<kTerms>(center, tap + i, distances[i]); };
+  const int last = 2 * s.radius;
+  Differences next = begin(0);
+  V e = find_exponent<kTerms>(s, next);
+  if (last > 0) next = begin(1);
+  for (int i = 0; i < last; ++i) {
+    add_tap(s, e, tap + i, sums);
+    e = find_exponent<kTerms>(s, next);
+    if (i + 2 <= last) next = begin(i + 2);
   }
+  add_tap(s, e, tap + last, sums);
   return sums;
 }
 
 // Filters the pixels [x, x + lanes) of row y; `end` is the first that is not wanted.
 template <Terms kTerms>
 void filter_pixels(const Images& in, const Settings& s, const FloatOutput& out, int x, int end, int y, const Tile& tile) {
-  const D d;
   const int r = s.radius;
-  const float* center = tile.at(x, y);
+  const Center center = load_center<kTerms>(s, tile.at(x, y));
   Sums sums{zero(), {zero(), zero(), zero()}};
   // Rows are summed by themselves: thousands of additions to one float would cost more digits than the weights' errors.
-  for (int dy = std::max(-r, -y); dy <= std::min(r, out.height - 1 - y); ++dy) {
+  const TapRange rows = clamped_taps(y, r, out.height);
+  for (int dy = rows.first; dy <= rows.last; ++dy) {
     const float* distances = s.pixel_distances.data() + static_cast<std::ptrdiff_t>(std::abs(dy)) * (2 * r + 1);
-    const Sums row = sum_taps<kTerms>(s, center, tile.at(x - r, y + dy), distances, tile.stride);
+    const Sums row = sum_taps<kTerms>(s, center, tile.at(x - r, y + dy), distances);
     sums.weight = hn::Add(sums.weight, row.weight);
     sums.color = add(sums.color, row.color);
   }
-  const Mask counts = hn::Lt(hn::LoadU(d, center), set(kFar));
+  const Mask counts = hn::Lt(center.color.x, set(kFar));
   const V3 own = load(in.color.row(y) + x, in.color.plane_stride);
-  store(hn::IfThenElse(counts, hn::Div(sums.color.x, sums.weight), own.x), end - x, out.row(y, 0) + x);
-  store(hn::IfThenElse(counts, hn::Div(sums.color.y, sums.weight), own.y), end - x, out.row(y, 1) + x);
-  store(hn::IfThenElse(counts, hn::Div(sums.color.z, sums.weight), own.z), end - x, out.row(y, 2) + x);
+  const V3 mean{hn::Div(sums.color.x, sums.weight), hn::Div(sums.color.y, sums.weight), hn::Div(sums.color.z, sums.weight)};
+  store(if_then_else(counts, mean, own), end - x, out.row(y) + x, out.plane_stride);
 }
 
 template <Terms kTerms>
@@ -162,7 +215,7 @@ void filter_tiles(const Images& in, const Settings& s, const FloatOutput& out, i
   for (int top = y0; top < y1; top += kTileHeight)
     for (int left = 0; left < out.width; left += kTileWidth) {
       const int bottom = std::min(y1, top + kTileHeight), right = std::min(out.width, left + kTileWidth);
-      const Tile tile{scratch, tile_stride(s.radius), left - s.radius, top - s.radius};
+      const Tile tile{scratch, left - s.radius, top - s.radius};
       gather<kTerms>(in, s.radius, top, bottom, tile);
       for (int y = top; y < bottom; ++y)
         for (int x = left; x < right; x += lanes()) filter_pixels<kTerms>(in, s, out, x, right, y, tile);
@@ -185,8 +238,7 @@ HWY_AFTER_NAMESPACE();
 namespace quell::joint_bilateral {
 
 std::size_t scratch_bytes(int radius) {
-  return static_cast<std::size_t>(kTileHeight + 2 * radius) * kPlanes * static_cast<std::size_t>(tile_stride(radius)) *
-         sizeof(float);
+  return static_cast<std::size_t>(kTileHeight + 2 * radius) * kPlanes * kStride * sizeof(float);
 }
 
 HWY_EXPORT(FilterRows);

@@ -16,7 +16,7 @@ struct Images {
 /// What weights are made of. A weight is 2^-(gain e), where e counts in squared distances of color: that term then needs no
 /// factor of its own, and the factors of the others are relative to it. Each is finite and at least 0; gain is above 0.
 struct Settings {
-  int radius = 0;                      ///< px
+  int radius = 0;                      ///< px, at most kMaxRadius
   float gain = 1;                      ///< log2(e) / (2 sigma_color^2)
   float normal_factor = 0;             ///< sigma_color^2 / sigma_normal^2
   float plane_factor = 0;              ///< sigma_color / sigma_plane: it scales a length, not its square
@@ -27,6 +27,8 @@ struct Settings {
 
 /// Up to this sigma_normal (rad) a weight at 60 degrees is below 1.2e-6, and what a tap beyond that weighs does not matter.
 inline constexpr double kLargestNarrowSigma = 0.2;
+
+inline constexpr int kMaxRadius = 64;  ///< px
 
 /// Bytes of memory that filter_rows works in.
 std::size_t scratch_bytes(int radius);

@@ -1,23 +1,21 @@
-// Adds to Google Benchmark's own main what a report of the kernels must say: which vector unit computed, and on what.
+#include "tests/bench/bench_main.h"
+
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
 #include <exception>
 
 #include "quell/simd/isa.h"
-#include "tests/bench/frame.h"
-#include "tests/bench/kernel_bench.h"
 
-int main(int argc, char** argv) {
-  using namespace quell::bench;
+namespace quell::bench {
+
+int run_benchmarks(int argc, char** argv, const std::function<void()>& add) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   try {
-    quell::pin_isa_from_environment();
-    benchmark::AddCustomContext("isa", quell::current_isa());
-    benchmark::AddCustomContext("frame", make_frame({16, 16}).from);
-    add_ceiling_benchmarks();
-    add_joint_bilateral_benchmarks();
+    pin_isa_from_environment();
+    benchmark::AddCustomContext("isa", current_isa());
+    if (add) add();
     benchmark::RunSpecifiedBenchmarks();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "error: %s\n", error.what());
@@ -26,3 +24,5 @@ int main(int argc, char** argv) {
   benchmark::Shutdown();
   return 0;
 }
+
+}  // namespace quell::bench

@@ -53,8 +53,6 @@ constexpr auto spread() {
   return order;
 }
 
-constexpr std::size_t kChains = 10;  // of multiply-adds: enough to hide their latency beside the other operations
-
 }  // namespace quell::bench
 #endif
 
@@ -70,6 +68,29 @@ using namespace simd::HWY_NAMESPACE;  // NOLINT: the vocabulary of kernels
 HWY_INLINE void may_change(V& v) { asm volatile("" : "+" QUELL_VECTOR_REGISTER(v.raw)); }
 HWY_INLINE void need(V v) { asm volatile("" : : QUELL_VECTOR_REGISTER(v.raw)); }
 #undef QUELL_VECTOR_REGISTER
+
+// Sums of multiply-adds: as many as hide their latency. Members instead of an array, which would lie in memory.
+struct Chains {
+  V c0, c1, c2, c3, c4, c5, c6, c7, c8, c9;
+};
+constexpr std::size_t kChains = 10;
+template <std::size_t kIndex>
+HWY_INLINE V& chain_of(Chains& c) {
+  if constexpr (kIndex == 0) return c.c0;
+  if constexpr (kIndex == 1) return c.c1;
+  if constexpr (kIndex == 2) return c.c2;
+  if constexpr (kIndex == 3) return c.c3;
+  if constexpr (kIndex == 4) return c.c4;
+  if constexpr (kIndex == 5) return c.c5;
+  if constexpr (kIndex == 6) return c.c6;
+  if constexpr (kIndex == 7) return c.c7;
+  if constexpr (kIndex == 8) return c.c8;
+  if constexpr (kIndex == 9) return c.c9;
+}
+HWY_INLINE Chains no_sums() { return {zero(), zero(), zero(), zero(), zero(), zero(), zero(), zero(), zero(), zero()}; }
+HWY_INLINE void need(const Chains& c) {
+  need(c.c0), need(c.c1), need(c.c2), need(c.c3), need(c.c4), need(c.c5), need(c.c6), need(c.c7), need(c.c8), need(c.c9);
+}
 
 // An operation whose second operand is `b`. A multiply-add goes to a chain, since its result takes the place of an operand; all
 // others are by themselves.
@@ -90,17 +111,19 @@ HWY_INLINE void operate(V& chain, V& a, V b) {
 }
 
 template <Mix kMix, std::size_t kIndex>
-HWY_INLINE void step(V* chains, V& a, V b, const float* memory) {
+HWY_INLINE void step(Chains& chains, V& a, V b, const float* memory) {
   constexpr auto kOrder = spread<kMix>();
+  // Each multiply-add to the chain behind that of the one before.
+  constexpr std::size_t kChain = static_cast<std::size_t>(std::count(kOrder.begin(), kOrder.begin() + kIndex, Op::fma)) % kChains;
   constexpr std::size_t kCount = kOrder.size(), kLoads = static_cast<std::size_t>(kMix.load);
   // Loads are the second operand of operations that are spread evenly.
   constexpr bool kLoadsHere = (kIndex + 1) * kLoads / kCount > kIndex * kLoads / kCount;
   if constexpr (kLoadsHere) b = hn::LoadU(D(), memory + kIndex % 8 * kMaxLanes);
-  operate<kOrder[kIndex]>(chains[kIndex % kChains], a, b);
+  operate<kOrder[kIndex]>(chain_of<kChain>(chains), a, b);
 }
 
 template <Mix kMix, std::size_t... kIndices>
-HWY_INLINE void all_steps(V* chains, V& a, V b, const float* memory, std::index_sequence<kIndices...>) {
+HWY_INLINE void all_steps(Chains& chains, V& a, V b, const float* memory, std::index_sequence<kIndices...>) {
   (step<kMix, kIndices>(chains, a, b, memory), ...);
 }
 
@@ -108,34 +131,35 @@ template <Mix kMix>
 void run_mix(std::int64_t rounds) {
   HWY_ALIGN float memory[8 * kMaxLanes];
   std::fill_n(memory, 8 * kMaxLanes, 1.0F);
-  V chains[kChains], a = set(1.0F);
-  for (V& chain : chains) chain = set(0.0F);
+  Chains chains = no_sums();
+  V a = set(1.0F);
   const V b = set(1.0F);
   for (std::int64_t i = 0; i < rounds; ++i) {
     asm volatile("" : : "r"(memory) : "memory");
     all_steps<kMix>(chains, a, b, memory, std::make_index_sequence<static_cast<std::size_t>(kMix.operations())>());
   }
-  for (const V& chain : chains) need(chain);
+  need(chains);
 }
 
 void RunMix(Kernel kernel, std::int64_t rounds) {
   switch (kernel) {
     case Kernel::joint_bilateral:
       return run_mix<kJointBilateralMix>(rounds);
+    case Kernel::atrous:
+      return run_mix<kAtrousMix>(rounds);
   }
 }
 
 void RunFma(std::int64_t rounds) {
-  V c0 = set(0.0F), c1 = c0, c2 = c0, c3 = c0, c4 = c0, c5 = c0, c6 = c0, c7 = c0, c8 = c0, c9 = c0;
-  V a = set(1.0F), b = set(1.0F);
-  may_change(a), may_change(b);
+  Chains chains = no_sums();
+  V a = set(1.0F), b = a;
+  const auto add = [&](V& chain) { chain = hn::MulAdd(a, b, chain); };
   for (std::int64_t i = 0; i < rounds; ++i) {
-    c0 = hn::MulAdd(a, b, c0), c1 = hn::MulAdd(a, b, c1), c2 = hn::MulAdd(a, b, c2), c3 = hn::MulAdd(a, b, c3);
-    c4 = hn::MulAdd(a, b, c4), c5 = hn::MulAdd(a, b, c5), c6 = hn::MulAdd(a, b, c6), c7 = hn::MulAdd(a, b, c7);
-    c8 = hn::MulAdd(a, b, c8), c9 = hn::MulAdd(a, b, c9);
     may_change(a), may_change(b);
+    add(chains.c0), add(chains.c1), add(chains.c2), add(chains.c3), add(chains.c4);
+    add(chains.c5), add(chains.c6), add(chains.c7), add(chains.c8), add(chains.c9);
   }
-  for (const V& c : {c0, c1, c2, c3, c4, c5, c6, c7, c8, c9}) need(c);
+  need(chains);
 }
 
 // Past the caches: a kernel's output is not read again before it has left them.
@@ -162,8 +186,8 @@ namespace {
 
 constexpr int kRepeats = 5;
 constexpr std::int64_t kFmaRounds = 3'000'000;  // some 10 ms
-constexpr std::int64_t kMixRounds = 1'000'000;
-constexpr int kFmaChains = 10;
+constexpr std::int64_t kMixOperations = 40'000'000;
+constexpr int kFmasOfRound = 10;
 
 double best_of_repeats(const std::function<double()>& seconds) {
   double best = seconds();
@@ -212,22 +236,29 @@ double measure_copy_bandwidth(int threads) {
 }
 
 double measure_peak_flops(int threads) {
-  const double seconds =
-      best_of_repeats([&] { return time_threads(threads, [](int) { HWY_DYNAMIC_DISPATCH(RunFma)
-                                                                   (kFmaRounds); }); });
-  return 2.0 * kFmaChains * vector_lanes() * static_cast<double>(kFmaRounds) * threads / seconds;
+  const double seconds = best_of_repeats([&] {
+    return time_threads(threads, [](int) {
+      HWY_DYNAMIC_DISPATCH(RunFma)
+      (kFmaRounds);
+    });
+  });
+  return 2.0 * kFmasOfRound * vector_lanes() * static_cast<double>(kFmaRounds) * threads / seconds;
 }
 
 const Mix& mix_of(Kernel kernel) {
-  static constexpr Mix kMixes[] = {kJointBilateralMix};
+  static constexpr Mix kMixes[] = {kJointBilateralMix, kAtrousMix};
   return kMixes[static_cast<std::size_t>(kernel)];
 }
 
 double measure_issue_bound(Kernel kernel, int threads) {
-  const double seconds =
-      best_of_repeats([&] { return time_threads(threads, [&](int) { HWY_DYNAMIC_DISPATCH(RunMix)
-                                                                    (kernel, kMixRounds); }); });
-  return seconds / (static_cast<double>(kMixRounds) * vector_lanes() * threads);
+  const std::int64_t rounds = kMixOperations / mix_of(kernel).operations();
+  const double seconds = best_of_repeats([&] {
+    return time_threads(threads, [&](int) {
+      HWY_DYNAMIC_DISPATCH(RunMix)
+      (kernel, rounds);
+    });
+  });
+  return seconds / (static_cast<double>(rounds) * vector_lanes() * threads);
 }
 
 const Ceilings& ceilings(int threads) {

@@ -16,10 +16,11 @@ double measure_copy_bandwidth(int threads);
 /// Floating-point operations a second of independent multiply-adds, on the current vector unit.
 double measure_peak_flops(int threads);
 
-enum class Kernel { joint_bilateral };
+enum class Kernel { joint_bilateral, atrous };
+/// Of a unit of its work: of the joint bilateral filter a tap, of the à-trous filter, whose taps share some, a pixel.
 const Mix& mix_of(Kernel kernel);
 
-/// The issue bound: seconds for one tap of one pixel when the operations of the kernel's mix are all independent of each other
+/// The issue bound: seconds for a unit of work when the operations of the kernel's mix are all independent of each other
 /// and all loads hit the first-level cache. Divided by the number of threads, measured while all of them run.
 double measure_issue_bound(Kernel kernel, int threads);
 

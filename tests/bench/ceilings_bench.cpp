@@ -24,6 +24,8 @@ void add_ceiling_benchmarks() {
     add_ceiling("ceiling/fma" + suffix, "GFLOP/s", 1e9, [=] { return measure_peak_flops(threads); });
     add_ceiling("ceiling/issue/joint_bilateral" + suffix, "ns/tap", 1e-9,
                 [=] { return measure_issue_bound(Kernel::joint_bilateral, threads); });
+    add_ceiling("ceiling/issue/atrous_svgf" + suffix, "ns/px", 1e-9,
+                [=] { return measure_issue_bound(Kernel::atrous, threads); });
   }
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "quell/sdk/types.h"
+
 namespace quell::bench {
 
 struct Figure {
@@ -22,13 +24,23 @@ struct Figure {
 std::vector<Figure> scheduler_figures();
 std::vector<Figure> joint_bilateral_figures();
 std::vector<Figure> flip_figures();
+std::vector<Figure> atrous_figures();
 
 /// The seconds of several ways to do something, in their order, again and again in alternation, so that all see the same
 /// neighbors: of each the smallest, to which the machine's other work has added least.
 std::vector<double> time_alternately(int repeats, const std::vector<std::function<double()>>& ways);
 
+/// Throws when `got`'s red and `want(x, y)` differ by more than 1e-2 in more than one pixel of ten: that what is timed beside
+/// each other is the same filter.
+void require_same_filter(const FloatImage& got, const std::function<float(int x, int y)>& want, const std::string& what);
+
 /// How much the largest value lies above the smallest, as a fraction.
 double spread(const std::vector<double>& values);
+
+/// "12.3 ms and 45.6 ms"
+std::string in_milliseconds(double a, double b);
+/// "1.2, 1.3 ns a tap"
+std::string in_nanoseconds(const std::vector<double>& seconds, const char* unit);
 
 /// Threads of the bars: two, or one where there is no more.
 int acceptance_threads();

@@ -1,7 +1,6 @@
 // The joint bilateral filter against others, against double precision, and against itself on other threads, radii and sizes.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <deque>
 
 #include "quell/simd/isa.h"
@@ -18,12 +17,6 @@ constexpr double kBars[] = {40, 18};
 
 bool machine_has(const std::string& isa) { return std::ranges::find(isas(), isa) != isas().end(); }
 
-std::string milliseconds(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g ms", seconds * 1e3);
-  return text;
-}
-
 double run_on(const std::string& isa, PassRunner& pass) {
   pin_isa(isa, "bench");
   double best = pass.run();
@@ -35,6 +28,9 @@ double run_on(const std::string& isa, PassRunner& pass) {
 void compare_with_others(const BenchFrame& frame, std::vector<Figure>& figures) {
   const InterleavedFrame pixels = interleave(frame);
   PassRunner pass(joint_bilateral_setup(frame, kRadius), acceptance_threads());
+  const std::vector<Float3> listing = filter_as_the_course(pixels, {}, acceptance_threads());
+  const auto red = [&](int x, int y) { return listing[static_cast<std::size_t>(y * pixels.width + x)].x; };
+  require_same_filter(pass.output().floats(), red, "the course's listing");
   std::vector<std::function<double()>> ways = {
       [&] { return run_on("best", pass); },
       [&] { return time_call([&] { filter_as_the_course(pixels, {}, acceptance_threads()); }); }};
@@ -52,14 +48,13 @@ void compare_with_others(const BenchFrame& frame, std::vector<Figure>& figures) 
     } else {
       const double own = seconds[ways.size() - units.size() + static_cast<std::size_t>(place - units.begin())];
       figure.reached = seconds[1] / own;
-      figure.note = milliseconds(own) + " and " + milliseconds(seconds[1]);
+      figure.note = in_milliseconds(own, seconds[1]);
     }
     figures.push_back(figure);
   }
   figures.push_back({.what = "radius 16, 512x512, times as fast as OpenCV's filter", .bar = 6});
   if (kHasOpenCv)
-    figures.back().reached = seconds[2] / seconds[0],
-    figures.back().note = milliseconds(seconds[0]) + " and " + milliseconds(seconds[2]);
+    figures.back().reached = seconds[2] / seconds[0], figures.back().note = in_milliseconds(seconds[0], seconds[2]);
   else
     figures.back().skipped = "OpenCV was not found when this was built";
 }
@@ -100,19 +95,9 @@ void compare_threads(const BenchFrame& frame, std::vector<Figure>& figures) {
     PassRunner one(joint_bilateral_setup(frame, kRadius), 1), two(joint_bilateral_setup(frame, kRadius), 2);
     const auto seconds = time_alternately(9, {[&] { return one.run(); }, [&] { return two.run(); }});
     figure.reached = seconds[0] / seconds[1];
-    figure.note = milliseconds(seconds[0]) + " and " + milliseconds(seconds[1]);
+    figure.note = in_milliseconds(seconds[0], seconds[1]);
   }
   figures.push_back(figure);
-}
-
-std::string in_ns(const std::vector<double>& seconds) {
-  std::string text;
-  for (const double s : seconds) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%s%.4g", text.empty() ? "" : ", ", s * 1e9);
-    text += number;
-  }
-  return text + " ns a tap";
 }
 
 /// Seconds a tap of the filter in several setups, measured in alternation.
@@ -133,13 +118,13 @@ void compare_with_itself(std::vector<Figure>& figures) {
                      .reached = spread(radii),
                      .bar = 0.15,
                      .at_most = true,
-                     .note = in_ns(radii)});
+                     .note = in_nanoseconds(radii, "ns a tap")});
   const auto sizes = seconds_a_tap({{{1280, 720}, 8}, {{1920, 1080}, 8}, {{2560, 1440}, 8}, {{3840, 2160}, 8}});
   figures.push_back({.what = "spread of the cost per tap from 720p to 2160p, radius 8",
                      .reached = spread(sizes),
                      .bar = 0.1,
                      .at_most = true,
-                     .note = in_ns(sizes)});
+                     .note = in_nanoseconds(sizes, "ns a tap")});
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "quell/runtime/executor.h"
+#include "tests/bench/bench_main.h"
 
 namespace quell::bench {
 
@@ -15,10 +16,14 @@ std::vector<int> thread_counts() {
 
 std::string text(Size size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
 
+namespace {
+
 void report_cost(benchmark::State& state, double seconds, const Work& work) {
   state.counters["ns/px"] = seconds * 1e9 / work.pixels;
   state.counters["ns/tap"] = seconds * 1e9 / work.taps;
 }
+
+}  // namespace
 
 void measure_pass(benchmark::State& state, PassRunner& pass, const Work& work, Kernel kernel, int threads) {
   double total = 0;
@@ -28,13 +33,39 @@ void measure_pass(benchmark::State& state, PassRunner& pass, const Work& work, K
     total += seconds;
   }
   const double seconds = total / static_cast<double>(state.iterations());
-  const double flops = work.taps * mix_of(kernel).flops() / seconds, bytes = work.bytes / seconds;
+  const double flops = work.units * mix_of(kernel).flops() / seconds, bytes = work.bytes / seconds;
   report_cost(state, seconds, work);
   state.counters["GFLOP/s"] = flops / 1e9;
   state.counters["GB/s"] = bytes / 1e9;
   state.counters["of_peak"] = flops / ceilings(threads).flops;
   state.counters["of_copy"] = bytes / ceilings(threads).bytes_per_second;
-  state.counters["of_issue"] = issue_bound(kernel, threads) * work.taps / seconds;
+  state.counters["of_issue"] = issue_bound(kernel, threads) * work.units / seconds;
+}
+
+void add_reference(const std::string& name, const Work& work, const std::function<std::function<void()>()>& prepare) {
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [=](benchmark::State& state) {
+                                 const std::function<void()> call = prepare();
+                                 double total = 0;
+                                 for ([[maybe_unused]] auto _ : state) {
+                                   const double seconds = time_call(call);
+                                   state.SetIterationTime(seconds);
+                                   total += seconds;
+                                 }
+                                 report_cost(state, total / static_cast<double>(state.iterations()), work);
+                               })
+      ->Unit(benchmark::kMillisecond)
+      ->UseManualTime();
 }
 
 }  // namespace quell::bench
+
+int main(int argc, char** argv) {
+  using namespace quell::bench;
+  return run_benchmarks(argc, argv, [] {
+    benchmark::AddCustomContext("frame", make_frame({16, 16}).from);
+    add_ceiling_benchmarks();
+    add_joint_bilateral_benchmarks();
+    add_atrous_benchmarks();
+  });
+}

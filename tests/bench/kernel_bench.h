@@ -9,6 +9,7 @@ namespace quell::bench {
 
 void add_ceiling_benchmarks();
 void add_joint_bilateral_benchmarks();
+void add_atrous_benchmarks();
 
 /// 1, 2, 4, ... and all processors.
 std::vector<int> thread_counts();
@@ -18,7 +19,7 @@ std::string text(Size size);
 
 /// Runs the pass until Google Benchmark has enough, and reports its cost beside the ceilings.
 void measure_pass(benchmark::State& state, PassRunner& pass, const Work& work, Kernel kernel, int threads);
-/// Of references, which have no issue bound.
-void report_cost(benchmark::State& state, double seconds, const Work& work);
+/// The work of others, which has no issue bound: `prepare` gets its images ready and returns what is timed.
+void add_reference(const std::string& name, const Work& work, const std::function<std::function<void()>()>& prepare);
 
 }  // namespace quell::bench

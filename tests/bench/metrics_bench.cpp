@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "quell/metrics/comparison.h"
+#include "tests/bench/bench_main.h"
 
 namespace quell::bench {
 namespace {
@@ -72,4 +73,4 @@ const bool kAdded = [] {
 }  // namespace
 }  // namespace quell::bench
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) { return quell::bench::run_benchmarks(argc, argv); }

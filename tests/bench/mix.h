@@ -3,7 +3,7 @@
 
 namespace quell::bench {
 
-/// Vector operations for one tap of as many pixels as a vector has lanes.
+/// Vector operations for as many pixels as a vector has lanes.
 struct Mix {
   int fma = 0;       ///< multiply-add of any signs
   int add = 0;       ///< and subtract
@@ -16,6 +16,9 @@ struct Mix {
   int logic = 0;     ///< and, or, compare, select, absolute value
   int load = 0;      ///< of a vector, or of one value into all lanes
 
+  constexpr Mix operator*(int n) const {
+    return {fma * n, add * n, mul * n, min_max * n, divide * n, root * n, estimate * n, shift * n, logic * n, load * n};
+  }
   constexpr int flops() const { return 2 * fma + add + mul + min_max + divide + root; }
   constexpr int operations() const { return fma + add + mul + min_max + divide + root + estimate + shift + logic; }
   constexpr Mix operator+(const Mix& o) const {
@@ -30,12 +33,27 @@ constexpr Mix kDotAdd3{.fma = 3};
 /// exp2_negative(): the limit, rounding, the rest, four steps of Horner's rule, and the exponent put in.
 constexpr Mix kExp2{.fma = 6, .add = 1, .mul = 1, .min_max = 1, .shift = 1};
 
-/// sum_taps() of passes/spatial/joint_bilateral_kernel.cpp with all four terms, distances in pixels, narrow normals.
-constexpr Mix kJointBilateralMix = Mix{.load = 3} + kSub3 + kDot3 + kDotAdd3 +
-                                   Mix{.mul = 1, .divide = 1} +         // plane: way, height, length; square and quotient
-                                   Mix{.load = 4} + kSub3 + kDotAdd3 +  // color, and the distance in pixels
+/// A tap of sum_taps() of passes/spatial/joint_bilateral_kernel.cpp with all four terms, distances in pixels, narrow normals.
+constexpr Mix kJointBilateralMix = Mix{.load = 3} + kSub3 + kDot3 + kDotAdd3 +  // position: way, height, length
+                                   Mix{.fma = 2, .mul = 2, .estimate = 1} +     // plane: their quotient, squared, and the sum
+                                   Mix{.load = 4} + kSub3 + kDotAdd3 +          // color, and the distance in pixels
                                    Mix{.load = 3} + kSub3 + kDot3 + Mix{.fma = 4} +  // normal: chord, and the angle's polynomial
-                                   Mix{.fma = 1, .add = 1} +                         // distance in the world, sum
-                                   kExp2 + Mix{.fma = 3, .add = 1};                  // weight; sums of color and weights
+                                   Mix{.fma = 1} + kExp2 +
+                                   Mix{.fma = 3, .add = 1, .load = 3};  // distance in the world; weight; sums
+
+/// A pixel of filter_row() of passes/spatial/atrous_kernel.cpp with the stops of SVGF, narrow normals, a variance, and the
+/// depth's gradient taken there. What gathers rows is left out, and so are exponents and weights that wait in memory.
+constexpr Mix kAtrousTap =
+    Mix{.add = 1, .mul = 1, .logic = 1, .load = 1} +                                 // luminance
+    Mix{.fma = 1, .add = 1, .logic = 1, .load = 1} +                                 // depth
+    kDotAdd3 + Mix{.fma = 3, .load = 3} +                                            // normal: cosine and logarithm
+    Mix{.fma = 4, .add = 3, .mul = 2, .min_max = 1, .shift = 1} +                    // exp2_negative() without a gain; the spline
+    Mix{.fma = 3, .add = 1, .load = 3} + Mix{.fma = 1, .mul = 1, .load = 1};         // sums; that of the variance
+constexpr Mix kAtrousPair{.fma = 3, .add = 1, .mul = 1, .estimate = 1, .logic = 1};  // two taps share the gain of depths
+constexpr Mix kAtrousSlope{.add = 2, .mul = 1, .logic = 13, .load = 3};
+constexpr Mix kAtrousGain{.fma = 3, .add = 2, .mul = 2, .min_max = 2, .divide = 1, .root = 1, .load = 6};  // with the blur
+constexpr Mix kAtrousMix = kAtrousTap * 24 + kAtrousPair * 12 + kAtrousSlope * 2 + kAtrousGain +
+                           Mix{.add = 3, .mul = 1, .min_max = 1, .logic = 1, .load = 8} +  // pixel()
+                           Mix{.add = 5, .mul = 10, .divide = 1, .logic = 5, .load = 8};   // the tap in the middle, the quotients
 
 }  // namespace quell::bench

@@ -1,98 +1,19 @@
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <map>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "quell/testing/conformance.h"
 #include "quell/testing/pass_test.h"
+#include "tests/passes/atrous_reference.h"
 
-namespace quell {
+namespace quell::atrous_test {
 namespace {
-
-using Vec = std::array<double, 3>;
-
-Vec pixel(const Image& image, int x, int y) {
-  const FloatImage view = image.floats();
-  return {view.at(x, y, 0), view.at(x, y, 1), view.at(x, y, 2)};
-}
-Vec operator-(const Vec& a, const Vec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-double square(double x) { return x * x; }
-
-// Inputs by port; those that are not there are absent.
-using Scene = std::map<std::string, Image>;
-
-struct Case {
-  std::string stops = "svgf";
-  int level = 0;
-  Size size{33, 17};
-  std::set<std::string> without = {"depth_gradient", "blurred_variance"};
-  std::map<std::string, double> params = {};  // others have the defaults below
-  std::string phi_color_per_level = "quartered";
-
-  double param(const std::string& name) const {
-    static const std::map<std::string, double> kDefaults{{"sigma_z", 1},       {"eps_z", 1e-6},      {"sigma_n", 128},
-                                                         {"sigma_l", 4},       {"phi_color", 1},     {"phi_normal", 0.1},
-                                                         {"phi_position", 1},  {"sigma_color", 0.8}, {"sigma_normal", 0.1},
-                                                         {"sigma_plane", 0.1}, {"sigma_coord", 32}};
-    return params.count(name) ? params.at(name) : kDefaults.at(name);
-  }
-  bool has(const std::string& input) const { return without.count(input) == 0; }
-};
-
-// Repeatable noise in [0, 1).
-double noise(int x, int y, int c) {
-  unsigned h =
-      static_cast<unsigned>(x) * 374761393u + static_cast<unsigned>(y) * 668265263u + static_cast<unsigned>(c) * 2246822519u;
-  h = (h ^ (h >> 13)) * 1274126177u;
-  return static_cast<double>((h ^ (h >> 16)) & 0xffffff) / 0x1000000;
-}
-
-// A wavy surface with holes, a few fireflies, columns that face anywhere, and a step of depth in the middle.
-Scene make_scene(const Case& c) {
-  const auto is_hole = [](int x, int y) { return (x / 3 + y / 4) % 5 == 4; };
-  const auto normal = [=](int x, int y, int k) {
-    if (is_hole(x, y)) return 0.0F;
-    const double a = 0.4 * noise(x / 2, y, 7) * (x % 7 == 0 ? 8 : 0.3), b = 0.7 * y + 0.2 * noise(x, y, 8);
-    const Vec n{std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)};
-    return static_cast<float>(n[static_cast<std::size_t>(k)]);
-  };
-  const auto position = [](int x, int y, int k) {
-    const Vec p{1e2 + 0.5 * x, -20 + 0.5 * y, 30 + 0.2 * std::sin(x + 0.5 * y) + 0.05 * noise(x, y, 3)};
-    return static_cast<float>(p[static_cast<std::size_t>(k)]);
-  };
-  const auto depth = [=](int x, int y, int) {
-    if (is_hole(x, y)) return QUELL_NO_SURFACE_DEPTH;
-    return static_cast<float>(5 + 0.05 * x - 0.1 * y + 0.02 * noise(x, y, 4) + (3 * x > y + 50 ? 7 : 0));
-  };
-  const auto color = [](int x, int y, int k) {
-    return static_cast<float>(2 * noise(x, y, k) + (x % 11 == 5 && y % 5 == 2 ? 40 : 0));
-  };
-  const auto variance = [](int x, int y, int) {
-    return static_cast<float>(x % 9 == 8 ? 0 : 0.3 * noise(x, y, 5) * (y % 6 == 0 ? 1e-4 : 1));
-  };
-  const auto slope = [](int x, int y, int) { return static_cast<float>(0.1 * noise(x, y, 6)); };
-  const std::vector<std::tuple<const char*, PortType, std::function<float(int, int, int)>>> all{
-      {"color", QUELL_TYPE_COLOR, color},
-      {"normal", QUELL_TYPE_NORMAL, normal},
-      {"position", QUELL_TYPE_POSITION, position},
-      {"depth", QUELL_TYPE_DEPTH, depth},
-      {"depth_gradient", QUELL_TYPE_SCALAR, slope},
-      {"variance", QUELL_TYPE_VARIANCE, variance},
-      {"blurred_variance", QUELL_TYPE_VARIANCE, [&](int x, int y, int k) { return 0.5F * variance(y, x, k); }}};
-  Scene scene;
-  for (const auto& [name, type, value] : all)
-    if (c.has(name)) scene.emplace(name, test_image(type, c.size, value));
-  return scene;
-}
 
 struct Result {
   Image color, variance;
@@ -114,121 +35,6 @@ bool same_bits(const Image& a, const Image& b) {
         return false;
   return true;
 }
-
-// The published formulas, pixel by pixel in double precision.
-class Reference {
- public:
-  Reference(const Case& c, const Scene& scene) : c_(c), scene_(scene) {}
-
-  struct Filtered {
-    Vec color;
-    double variance;
-  };
-  Filtered filter(int x, int y) const {
-    static constexpr double kB3[3] = {3.0 / 8, 1.0 / 4, 1.0 / 16};
-    if (!counts(x, y)) return {pixel(image("color"), x, y), has("variance") ? at("variance", x, y) : 0};
-    Vec color{};
-    double weights = 0, variance = 0;
-    for (int dy = -2; dy <= 2; ++dy)
-      for (int dx = -2; dx <= 2; ++dx) {
-        const int step = 1 << c_.level, qx = x + dx * step, qy = y + dy * step;
-        if (!inside(qx, qy) || !counts(qx, qy)) continue;
-        const double w = kB3[std::abs(dx)] * kB3[std::abs(dy)] * stop(x, y, qx, qy);
-        const Vec q = pixel(image("color"), qx, qy);
-        weights += w;
-        for (std::size_t k = 0; k < 3; ++k) color[k] += w * q[k];
-        if (has("variance")) variance += w * w * at("variance", qx, qy);
-      }
-    return {{color[0] / weights, color[1] / weights, color[2] / weights}, variance / square(weights)};
-  }
-
- private:
-  const Image& image(const std::string& name) const { return scene_.at(name); }
-  bool has(const std::string& name) const { return scene_.count(name) == 1; }
-  double at(const std::string& name, int x, int y) const { return image(name).floats().at(x, y); }
-  double p(const std::string& name) const { return c_.param(name); }
-  bool inside(int x, int y) const { return x >= 0 && y >= 0 && x < c_.size.width && y < c_.size.height; }
-  bool counts(int x, int y) const {
-    if (has("normal") && dot(pixel(image("normal"), x, y), pixel(image("normal"), x, y)) == 0) return false;
-    return c_.stops != "svgf" || !has("depth") || at("depth", x, y) < 1e10;
-  }
-
-  double stop(int x, int y, int qx, int qy) const {
-    if (x == qx && y == qy) return 1;
-    if (c_.stops == "svgf") return w_z(x, y, qx, qy) * w_n(x, y, qx, qy) * w_l(x, y, qx, qy);
-    return c_.stops == "dammertz" ? dammertz(x, y, qx, qy) : joint_bilateral(x, y, qx, qy);
-  }
-
-  // Schied et al.
-  double w_z(int x, int y, int qx, int qy) const {
-    if (!has("depth")) return 1;
-    const double explained = has("depth_gradient") ? at("depth_gradient", x, y) * std::hypot(qx - x, qy - y)
-                                                   : std::abs(slope(x, y, 1, 0) * (qx - x) + slope(x, y, 0, 1) * (qy - y));
-    const double z = at("depth", x, y);
-    return std::exp(-std::abs(z - at("depth", qx, qy)) / (p("sigma_z") * explained + p("eps_z") * z));
-  }
-  // The smaller of the two differences along an axis, of those that there are.
-  double slope(int x, int y, int ax, int ay) const {
-    double smaller = std::numeric_limits<double>::infinity();
-    for (const int side : {-1, 1}) {
-      const int qx = x + side * ax, qy = y + side * ay;
-      if (!inside(qx, qy) || at("depth", qx, qy) >= 1e10) continue;
-      const double change = side * (at("depth", qx, qy) - at("depth", x, y));
-      if (std::abs(change) < std::abs(smaller)) smaller = change;
-    }
-    return std::isinf(smaller) ? 0 : smaller;
-  }
-  double w_n(int x, int y, int qx, int qy) const {
-    if (!has("normal")) return 1;
-    return std::pow(std::max(0.0, dot(pixel(image("normal"), x, y), pixel(image("normal"), qx, qy))), p("sigma_n"));
-  }
-  double luminance(int x, int y) const { return dot(pixel(image("color"), x, y), {0.2126, 0.7152, 0.0722}); }
-  double w_l(int x, int y, int qx, int qy) const {
-    if (!has("variance") && !has("blurred_variance")) return 1;
-    const double variance = has("blurred_variance") ? at("blurred_variance", x, y) : blurred(x, y);
-    return std::exp(-std::abs(luminance(x, y) - luminance(qx, qy)) / (p("sigma_l") * std::sqrt(variance) + 1e-8));
-  }
-  double blurred(int x, int y) const {
-    double sum = 0, weights = 0;
-    for (int qy = y - 1; qy <= y + 1; ++qy)
-      for (int qx = x - 1; qx <= x + 1; ++qx) {
-        if (!inside(qx, qy)) continue;
-        const double w = (qx == x ? 2 : 1) * (qy == y ? 2 : 1);
-        sum += w * at("variance", qx, qy), weights += w;
-      }
-    return sum / weights;
-  }
-
-  // Dammertz et al.
-  double dammertz(int x, int y, int qx, int qy) const {
-    const int halvings = c_.phi_color_per_level == "same" ? 0 : c_.phi_color_per_level == "halved" ? 1 : 2;
-    double e = squared("color", x, y, qx, qy) / (p("phi_color") * std::pow(0.5, halvings * c_.level));
-    if (has("normal")) e += squared("normal", x, y, qx, qy) / std::pow(4.0, c_.level) / p("phi_normal");
-    if (has("position")) e += squared("position", x, y, qx, qy) / p("phi_position");
-    return std::exp(-e);
-  }
-  double squared(const std::string& name, int x, int y, int qx, int qy) const {
-    const Vec d = pixel(image(name), qx, qy) - pixel(image(name), x, y);
-    return dot(d, d);
-  }
-
-  // The course's. The formula is about the unit vectors that the rounded normals mean.
-  double joint_bilateral(int x, int y, int qx, int qy) const {
-    double e = (square(qx - x) + square(qy - y)) / (2 * square(p("sigma_coord")));
-    e += squared("color", x, y, qx, qy) / (2 * square(p("sigma_color")));
-    if (!has("normal")) return std::exp(-e);
-    const Vec n = pixel(image("normal"), x, y), m = pixel(image("normal"), qx, qy);
-    const double cosine = dot(n, m) / std::sqrt(dot(n, n) * dot(m, m));
-    e += square(std::acos(std::min(1.0, std::max(-1.0, cosine)))) / (2 * square(p("sigma_normal")));
-    if (!has("position")) return std::exp(-e);
-    const Vec d = pixel(image("position"), qx, qy) - pixel(image("position"), x, y);
-    if (dot(d, d) > 0) e += square(dot(n, d)) / dot(d, d) / (2 * square(p("sigma_plane")));
-    return std::exp(-e);
-  }
-
-  const Case& c_;
-  const Scene& scene_;
-};
 
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
@@ -272,27 +78,41 @@ class AtrousOnTarget : public ::testing::TestWithParam<std::int64_t> {
   void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
 };
 
+struct Expected {
+  Case c;
+  Scene scene;
+  std::vector<Reference::Filtered> pixels;
+};
+const std::vector<Expected>& all_expected() {
+  static const std::vector<Expected> kAll = [] {
+    std::vector<Expected> all;
+    for (const Case& c : all_cases()) {
+      Expected expected{c, make_scene(c), {}};
+      const Reference reference(c, expected.scene);
+      for (int y = 0; y < c.size.height; ++y)
+        for (int x = 0; x < c.size.width; ++x) expected.pixels.push_back(reference.filter(x, y));
+      all.push_back(std::move(expected));
+    }
+    return all;
+  }();
+  return kAll;
+}
+
 // 1e-4 is the error that the pass promises, and the budget in its kernel. The absolute part is a rounding of the brightest color.
 TEST_P(AtrousOnTarget, MatchesTheFormulasInDoublePrecision) {
-  const std::vector<Case> cases = all_cases();
-  double worst = 0;
-  for (const Case& c : cases) {
-    const Scene scene = make_scene(c);
-    const Result got = run(c, scene);
-    const Reference reference(c, scene);
-    double worst_here = 0;
-    for (int y = 0; y < c.size.height; ++y)
-      for (int x = 0; x < c.size.width; ++x) {
-        const Reference::Filtered want = reference.filter(x, y);
-        const std::string where = std::to_string(x) + "," + std::to_string(y) + " of case " + std::to_string(&c - cases.data());
-        for (std::size_t k = 0; k < 3; ++k) {
-          worst_here = std::max(worst_here, std::abs(pixel(got.color, x, y)[k] - want.color[k]) / (want.color[k] + 1e-2));
-          ASSERT_NEAR(pixel(got.color, x, y)[k], want.color[k], 1e-4 * want.color[k] + 1e-6) << where;
-        }
-        ASSERT_NEAR(got.variance.floats().at(x, y), want.variance, 2e-4 * want.variance + 1e-8) << where;
+  for (const Expected& expected : all_expected()) {
+    const Size size = expected.c.size;
+    const Result got = run(expected.c, expected.scene);
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) {
+        const Reference::Filtered& want = expected.pixels[static_cast<std::size_t>(y * size.width + x)];
+        const auto where = [&, px = x, py = y] {
+          return std::to_string(px) + "," + std::to_string(py) + " of case " + std::to_string(&expected - all_expected().data());
+        };
+        for (std::size_t k = 0; k < 3; ++k)
+          ASSERT_NEAR(pixel(got.color, x, y)[k], want.color[k], 1e-4 * want.color[k] + 1e-6) << where();
+        ASSERT_NEAR(got.variance.floats().at(x, y), want.variance, 2e-4 * want.variance + 1e-8) << where();
       }
-    if (getenv("SHOW")) printf("%s level %d case %ld %g\n", c.stops.c_str(), c.level, &c - cases.data(), worst_here);
-    worst = std::max(worst, worst_here);
   }
 }
 
@@ -313,7 +133,167 @@ TEST_P(AtrousOnTarget, GivesTheSameBitsForAnyBandsAndThreads) {
 INSTANTIATE_TEST_SUITE_P(All, AtrousOnTarget, ::testing::ValuesIn(targets()),
                          [](const auto& target) { return std::string(hwy::TargetName(target.param)); });
 
+// An image without any edge-stopping input.
+Result blur(const Image& color, int level, const Image* variance = nullptr) {
+  PassTest pass("atrous");
+  pass.set("level", level).set("sigma_l", 1e6).input("color", color);
+  if (variance)
+    pass.input("variance", *variance).input("blurred_variance", test_image(QUELL_TYPE_VARIANCE, color.size(), [](int, int, int) {
+                                              return 1e18F;
+                                            }));
+  pass.run();
+  return {*pass.output_item("color").image(), *pass.output_item("variance").image()};
+}
+Image impulse(Size size, int x, int y) {
+  return test_image(QUELL_TYPE_COLOR, size, [=](int px, int py, int) { return px == x && py == y ? 1.0F : 0.0F; });
+}
+
+TEST(Atrous, HasEachOf25OffsetsOnceAndWeightsThatSumTo1) {
+  for (const int level : {0, 1, 3}) {
+    const int step = 1 << level, middle = 4 * step, size = 2 * middle + 1;  // no window of a pixel that sees the impulse is cut
+    const Result got = blur(impulse({size, size}, middle, middle), level);
+    int offsets = 0;
+    double sum = 0;
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x)
+        if (const double w = got.color.floats().at(x, y); w != 0) {
+          ++offsets, sum += w;
+          ASSERT_TRUE((x - middle) % step == 0 && (y - middle) % step == 0) << x << "," << y;
+        }
+    EXPECT_EQ(offsets, 25);
+    EXPECT_NEAR(sum, 1, 1e-6);
+  }
+}
+
+// The closed form: in one dimension, five levels multiply the polynomials of (1 4 6 4 1) / 16 at x, x^2, x^4, x^8 and x^16.
+TEST(Atrous, SpreadsAnImpulseOverFiveLevelsAsTheClosedFormSays) {
+  constexpr int kReach = 2 * 31, kSize = 4 * kReach + 1;
+  std::vector<long long> row(2 * kReach + 1);
+  row[kReach] = 1;
+  for (int level = 0; level < 5; ++level) {
+    std::vector<long long> next(row.size());
+    for (int x = 0; x < static_cast<int>(row.size()); ++x)
+      for (int k = -2; k <= 2; ++k)
+        if (const int q = x + k * (1 << level); q >= 0 && q < static_cast<int>(row.size()))
+          next[static_cast<std::size_t>(x)] += row[static_cast<std::size_t>(q)] * (k == 0 ? 6 : std::abs(k) == 1 ? 4 : 1);
+    row = next;
+  }
+  Image color = impulse({kSize, kSize}, kSize / 2, kSize / 2);
+  for (int level = 0; level < 5; ++level) color = blur(color, level).color;
+  const double scale = std::pow(2.0, -20);
+  for (int y = -kReach; y <= kReach; ++y)
+    for (int x = -kReach; x <= kReach; ++x) {
+      const double want = scale * static_cast<double>(row[static_cast<std::size_t>(x + kReach)]) * scale *
+                          static_cast<double>(row[static_cast<std::size_t>(y + kReach)]);
+      ASSERT_NEAR(color.floats().at(kSize / 2 + x, kSize / 2 + y), want, 2e-6 * want + 1e-12) << x << "," << y;
+    }
+}
+
+TEST(Atrous, LeavesAConstantImageConstant) {
+  for (const char* stops : {"svgf", "dammertz", "joint_bilateral"})
+    for (const int level : {0, 2, 5}) {
+      const Case c{.stops = stops, .level = level, .size = {61, 40}};
+      Scene scene = make_scene(c);
+      scene.insert_or_assign("color",
+                             test_image(QUELL_TYPE_COLOR, c.size, [](int, int, int k) { return 0.3F + static_cast<float>(k); }));
+      const Result got = run(c, scene);
+      for (int y = 0; y < c.size.height; ++y)
+        for (int x = 0; x < c.size.width; ++x)
+          for (int k = 0; k < 3; ++k) {
+            const double want = double{0.3F + static_cast<float>(k)};
+            ASSERT_NEAR(got.color.floats().at(x, y, k), want, 1e-6 * want) << stops << " " << x << "," << y;
+          }
+    }
+}
+
+// Without edges, the variance of a mean of independent values: sum h^2 variance, in each direction 70/256 for a constant one.
+TEST(Atrous, CarriesTheVarianceOfAMean) {
+  const Size size{50, 30};
+  const Image variance = test_image(QUELL_TYPE_VARIANCE, size, [](int, int, int) { return 2.0F; });
+  const Result got = blur(impulse(size, 3, 3), 1, &variance);
+  for (int y = 4; y < size.height - 4; ++y)
+    for (int x = 4; x < size.width - 4; ++x)
+      ASSERT_NEAR(got.variance.floats().at(x, y), 2 * square(70.0 / 256), 2e-6) << x << "," << y;
+}
+
+TEST(Atrous, GivesNoVarianceWhenItGetsNone) {
+  const Result got = blur(impulse({20, 9}, 3, 3), 0);
+  for (int y = 0; y < 9; ++y)
+    for (int x = 0; x < 20; ++x) ASSERT_EQ(got.variance.floats().at(x, y), 0);
+}
+
+// A dark wall and a bright one, which differ in one of the inputs alone.
+Result run_walls(const char* stops, const char* input, PortType type, const std::function<float(int x, int y, int k)>& value) {
+  const Size size{40, 20};
+  PassTest pass("atrous");
+  pass.set("stops", stops).set("phi_color", 1e12).set("sigma_color", 1e6).set("sigma_coord", 1e6).set("sigma_plane", 1e6);
+  pass.input("color", test_image(QUELL_TYPE_COLOR, size, [](int x, int, int) { return x < 20 ? 1.0F : 5.0F; }));
+  if (std::string(input) == "position")  // the plane term needs normals
+    pass.input("normal", test_image(QUELL_TYPE_NORMAL, size, [](int, int, int k) { return k == 2 ? 1.0F : 0.0F; }))
+        .set("sigma_plane", 0.1);
+  pass.input(input, test_image(type, size, value));
+  pass.run();
+  return {*pass.output_item("color").image(), *pass.output_item("variance").image()};
+}
+void expect_walls(const Result& got, const char* what) {
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 40; ++x) ASSERT_NEAR(got.color.floats().at(x, y), x < 20 ? 1 : 5, 1e-5) << what << " " << x << "," << y;
+}
+
+TEST(Atrous, PassesNothingOverARightAngledCrease) {
+  const auto crease = [](int x, int, int k) { return k == (x < 20 ? 0 : 2) ? 1.0F : 0.0F; };
+  for (const char* stops : {"svgf", "joint_bilateral"})
+    expect_walls(run_walls(stops, "normal", QUELL_TYPE_NORMAL, crease), stops);
+}
+
+TEST(Atrous, PassesNothingOverAStepOfDepthOrPosition) {
+  expect_walls(run_walls("svgf", "depth", QUELL_TYPE_DEPTH,
+                         [](int x, int y, int) { return static_cast<float>(5 + 0.01 * x + 0.02 * y + (x < 20 ? 0 : 3)); }),
+               "depth");
+  const auto step = [](int x, int y, int k) { return static_cast<float>(k == 0 ? x : k == 1 ? y : x < 20 ? 0 : 1000); };
+  for (const char* stops : {"dammertz", "joint_bilateral"})
+    expect_walls(run_walls(stops, "position", QUELL_TYPE_POSITION, step), stops);
+}
+
+// The slope explains each difference, so that w_z is exp(-1) for taps beside the pixel's column, and 1 within it.
+TEST(Atrous, MixesAlongASlopeHoweverSteepItIs) {
+  const auto slope = [](int x, int, int) { return static_cast<float>(10 + 3 * x); };
+  const Result got = run_walls("svgf", "depth", QUELL_TYPE_DEPTH, slope);
+  const double side = (1.0 / 4 + 1.0 / 16) * std::exp(-1), total = 3.0 / 8 + 2 * side;
+  EXPECT_NEAR(got.color.floats().at(19, 10), (1 * (total - side) + 5 * side) / total, 1e-4);
+  EXPECT_NEAR(got.color.floats().at(20, 10), (5 * (total - side) + 1 * side) / total, 1e-4);
+}
+
+// A background next to a surface is neither a slope nor a neighbor.
+TEST(Atrous, KeepsTheBackgroundApart) {
+  const auto sky = [](int x, int y, int) { return x < 20 ? static_cast<float>(5 + 0.1 * x + 0.1 * y) : QUELL_NO_SURFACE_DEPTH; };
+  expect_walls(run_walls("svgf", "depth", QUELL_TYPE_DEPTH, sky), "depth");
+  const auto hole = [](int x, int, int k) { return x < 20 && k == 2 ? 1.0F : 0.0F; };
+  for (const char* stops : {"svgf", "dammertz", "joint_bilateral"})
+    expect_walls(run_walls(stops, "normal", QUELL_TYPE_NORMAL, hole), stops);
+}
+
+// Only its own pixel shows it; for the others it is as if there were no surface.
+TEST(Atrous, LeavesOutATapThatIsNotFinite) {
+  for (const char* stops : {"svgf", "dammertz", "joint_bilateral"})
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+      const Case c{.stops = stops, .without = {"depth_gradient", "variance"}};
+      Scene broken = make_scene(c), hole = make_scene(c);
+      ASSERT_NE(hole.at("normal").floats().at(7, 6, 2), 0.0F);
+      broken.at("color").writable_floats().at(7, 6, 1) = bad;
+      for (int k = 0; k < 3; ++k) hole.at("normal").writable_floats().at(7, 6, k) = 0;
+      Image got = run(c, broken).color;
+      EXPECT_TRUE(std::isnan(bad) ? std::isnan(got.floats().at(7, 6, 1)) : got.floats().at(7, 6, 1) == bad);
+      got.writable_floats().at(7, 6, 1) = hole.at("color").floats().at(7, 6, 1);
+      EXPECT_TRUE(same_bits(got, run(c, hole).color)) << stops;
+    }
+}
+
 }  // namespace
-}  // namespace quell
+}  // namespace quell::atrous_test
 
 QUELL_CONFORMANCE_TEST(atrous);
+QUELL_CONFORMANCE_TEST(atrous, .set("level", 2).set("sigma_n", 8));
+QUELL_CONFORMANCE_TEST(atrous, .set("stops", "dammertz"));
+QUELL_CONFORMANCE_TEST(atrous, .set("stops", "joint_bilateral").set("level", 3));
+QUELL_CONFORMANCE_TEST(atrous, .set("stops", "joint_bilateral").set("sigma_normal", 0.5));

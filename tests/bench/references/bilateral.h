@@ -3,11 +3,9 @@
 
 #include <vector>
 
-namespace quell::bench {
+#include "tests/bench/references/float3.h"
 
-struct Float3 {
-  float x, y, z;
-};
+namespace quell::bench {
 
 /// Rows one after the other, without gaps.
 struct InterleavedFrame {

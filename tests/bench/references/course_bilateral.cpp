@@ -9,11 +9,6 @@
 namespace quell::bench {
 namespace {
 
-Float3 operator-(const Float3& a, const Float3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Float3 operator+(const Float3& a, const Float3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Float3 operator*(const Float3& a, float s) { return {a.x * s, a.y * s, a.z * s}; }
-Float3 operator/(const Float3& a, float s) { return {a.x / s, a.y / s, a.z / s}; }
-float dot(const Float3& a, const Float3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 float square(float a) { return a * a; }
 float safe_acos(float a) { return std::acos(std::min(1.0F, std::max(-1.0F, a))); }
 
