@@ -123,33 +123,42 @@ SessionOptions with_listeners(SessionOptions options, std::optional<TraceFile>& 
   return options;
 }
 
-/// With `watch`, computes what has changed since its last run.
-ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log, Console& console, Watch* watch) {
-  Job& job = run.job;
-  SessionOptions options = with_listeners(run.options, trace, log);
+/// With `watch`, what has changed since its last run.
+RerunReport run_frames(Preparation& run, SessionOptions options, Progress& progress, RunLog& log, Watch* watch) {
+  const Job& job = run.job;
   std::optional<Session> session;
-  Progress progress(console, job.frames.size());
   options.on_frame = [&](const FrameReport& report) {
     const BufferPool::Usage usage = watch ? watch->rerun.usage() : session->pool().usage();
     tell_frame(report, usage, run, progress, log);
   };
   FrameSink& sink = run.measuring ? static_cast<FrameSink&>(*run.measuring) : *run.sink;
-  RerunReport rerun;
   if (watch) {
-    rerun = watch->rerun.run(job.graph, job.frames, *job.sequence, sink, options, run.labels);
-  } else {
-    rerun.frames = session.emplace(job.graph, options).run(job.frames, *job.sequence, sink);
-    rerun.peak_bytes = session->pool().usage().peak;
+    watch->rerun.on_restart([&] {
+      progress.restart();
+      if (run.measuring) run.measuring->restart();
+    });
+    return watch->rerun.run(job.graph, job.frames, *job.sequence, sink, options, run.labels);
   }
+  RerunReport report;
+  report.frames = session.emplace(job.graph, options).run(job.frames, *job.sequence, sink);
+  report.peak_bytes = session->pool().usage().peak;
+  return report;
+}
+
+ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log, Console& console, Watch* watch) {
+  Job& job = run.job;
+  Progress progress(console, job.frames.size());
+  const RerunReport rerun = run_frames(run, with_listeners(run.options, trace, log), progress, log, watch);
   const std::vector<FrameReport>& reports = rerun.frames;
   console.set_status("");
 
   tell_new_warnings(job);
+  if (run.measuring) tell_new_warnings(run.measuring->options(), job);
   if (watch) tell_computed(rerun, !watch->last);
   const bool is_all_kept = watch && rerun.results.empty();
   const std::vector<ResultFiles> written = watch ? select_results(run.results, rerun) : run.results;
   FrameSets frames = is_all_kept ? FrameSets{job.frames, {}, {}} : sort_frames(job.frames, reports);
-  const Ending ending = ending_of(frames, options.stop_on_error);
+  const Ending ending = ending_of(frames, run.options.stop_on_error);
   const RunOutcome outcome = {job,
                               written,
                               reports,
@@ -211,6 +220,7 @@ ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, W
   if (arguments.trace) trace.emplace(*arguments.trace);
   if (watch && watch->last) tell_left_files(watch->last->results, run.results);
   const ExitCode code = compute(run, trace, log, console, watch);
+  run.measuring.reset();  // with the images that it holds
   if (watch) watch->last = std::move(run);
   if (log.ok()) return code;
   spdlog::error("--log-json: {} could not be written", arguments.log_json->string());

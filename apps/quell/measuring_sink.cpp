@@ -1,6 +1,8 @@
 #include "measuring_sink.h"
 
 #include <algorithm>
+#include <exception>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <new>
@@ -8,7 +10,6 @@
 
 #include "console.h"
 #include "metric_options.h"
-#include "quell/text/error.h"
 
 namespace quell::app {
 namespace {
@@ -36,6 +37,15 @@ Image copy(const Image& image, BufferPool& pool) {
   return result;
 }
 
+/// What goes wrong is told; it must not fail the frame, which is written.
+void guarded(std::int64_t frame, std::string_view figures, std::string_view output, const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const std::bad_alloc&) {
+    spdlog::warn("frame {}: no {} of {}: memory ran out", frame, figures, output);
+  } catch (const std::exception& error) { spdlog::warn("frame {}: no {} of {}: {}", frame, figures, output, error.what()); }
+}
+
 std::string size_text(Size size) { return std::to_string(size.width) + " x " + std::to_string(size.height) + " pixels"; }
 
 }  // namespace
@@ -49,6 +59,7 @@ struct MeasuringSink::State {
   std::set<std::string> told;
   std::map<std::string, MeasuredOutput> totals;
   std::vector<std::int64_t> measured;
+  std::optional<std::int64_t> last_taken;
 
   void put(const std::string& output, std::int64_t frame, const std::vector<Metric>& all, const std::vector<Metric>& some,
            const FrameScores& scores) {
@@ -75,9 +86,18 @@ struct MeasuringSink::State {
     return input;
   }
 
-  bool tell_once(const std::string& text) {
-    const std::lock_guard lock(mutex);
-    return told.insert(text).second;
+  void tell_once(const std::string& text) {
+    {
+      const std::lock_guard lock(mutex);
+      if (!told.insert(text).second) return;
+    }
+    spdlog::warn(text);
+  }
+
+  /// After a frame that failed when its image was measured already: which of the two was written first must not matter.
+  void forget_changes(const std::vector<Metric>& all, MeasuredOutput& output) const {
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (info(all[i]).is_temporal) output.scores[i] = {};
   }
 };
 
@@ -92,12 +112,8 @@ MeasuringSink::~MeasuringSink() = default;
 void MeasuringSink::write(std::string_view output, std::int64_t frame, const Item& item) {
   sink_.write(output, frame, item);
   const Image* image = item.image();
-  if (!image || !options_.outputs.contains(output) || !options_.reference.has(frame)) return;
-  try {
-    measure(std::string(output), frame, *image);
-  } catch (const std::bad_alloc&) {
-    spdlog::warn("frame {}: no figures of {}: memory ran out", frame, output);
-  } catch (const Error& error) { spdlog::warn("frame {}: no figures of {}: {}", frame, output, error.what()); }
+  if (!image || !options_.outputs.contains(output) || !options_.has_reference(frame)) return;
+  guarded(frame, "figures", output, [&] { measure(std::string(output), frame, *image); });
 }
 
 /// Once a frame, whatever the number of outputs.
@@ -113,26 +129,25 @@ Image MeasuringSink::read_reference(std::int64_t frame) {
 
 void MeasuringSink::measure(const std::string& output, std::int64_t frame, const Image& image) {
   const Image reference = read_reference(frame);
-  if (image.size() != reference.size()) {
-    const std::string what = "no figures of " + output + ", which has " + size_text(image.size()) + ", while " +
-                             options_.reference.files() + " has " + size_text(reference.size());
-    if (state_->tell_once(what)) spdlog::warn(what);
-    return;
-  }
-  const std::vector<Metric>& all = options_.compare.metrics;
+  if (image.size() != reference.size())
+    return state_->tell_once("no figures of " + output + ", which has " + size_text(image.size()) + ", while " +
+                             options_.reference.files() + " has " + size_text(reference.size()));
   const ImagePair pair{reference, image.as(QUELL_TYPE_COLOR)};
-  state_->put(output, frame, all, state_->still.metrics, compare({pair}, state_->still, false, state_->pool));
+  state_->put(output, frame, options_.compare.metrics, state_->still.metrics,
+              compare({pair}, state_->still, false, state_->pool));
   if (state_->temporal.metrics.empty()) return;
   const auto& frames = options_.frames;
   const bool has_neighbor = std::ranges::binary_search(frames, frame - 1) || std::ranges::binary_search(frames, frame + 1);
   if (!has_neighbor) return;
-  Image kept = copy(pair.image, state_->pool);
-  {
-    const std::lock_guard lock(state_->mutex);
-    state_->frames[frame].images.insert_or_assign(output, std::move(kept));
-  }
-  measure_changes(output, frame);  // frames are written in any order: the later of two finds the other
-  measure_changes(output, frame + 1);
+  guarded(frame, "temporal figures", output, [&] {
+    Image kept = copy(pair.image, state_->pool);
+    {
+      const std::lock_guard lock(state_->mutex);
+      state_->frames[frame].images.insert_or_assign(output, std::move(kept));
+    }
+    measure_changes(output, frame);  // frames are written in any order: the later of two finds the other
+  });
+  guarded(frame + 1, "temporal figures", output, [&] { measure_changes(output, frame + 1); });
 }
 
 void MeasuringSink::measure_changes(const std::string& output, std::int64_t frame) {
@@ -140,12 +155,20 @@ void MeasuringSink::measure_changes(const std::string& output, std::int64_t fram
   if (!input) return;
   CompareOptions options = state_->temporal;
   if (options_.motion && contains(options.metrics, Metric::warped)) {
-    if (options_.motion->has(frame))
-      input->motion = options_.motion->read(frame, state_->pool);
-    else
-      std::erase(options.metrics, Metric::warped);  // figures with motion and without it must not be mixed
+    guarded(frame, info(Metric::warped).name, output, [&] { input->motion = read_motion(frame, input->pair.image.size()); });
+    if (!input->motion) std::erase(options.metrics, Metric::warped);  // figures with motion and without it must not be mixed
   }
   state_->put(output, frame, options_.compare.metrics, options.metrics, compare(*input, options, false, state_->pool));
+}
+
+/// None where there is none, or of another size.
+Image MeasuringSink::read_motion(std::int64_t frame, Size size) {
+  if (!options_.motion->has(frame)) return {};
+  Image motion = options_.motion->read(frame, state_->pool);
+  if (motion.size() == size) return motion;
+  state_->tell_once("no warped where " + options_.motion->files() + " has " + size_text(motion.size()) + ", and images have " +
+                    size_text(size));
+  return {};
 }
 
 std::vector<MeasuredOutput> MeasuringSink::take(std::int64_t frame) {
@@ -154,6 +177,7 @@ std::vector<MeasuredOutput> MeasuringSink::take(std::int64_t frame) {
   std::vector<MeasuredOutput> result;
   if (found != state_->frames.end())
     for (auto& [output, measured] : found->second.measured) {
+      if (state_->last_taken != frame - 1) state_->forget_changes(options_.compare.metrics, measured);
       MeasuredOutput& total = state_->totals[output];
       total.output = output;
       total.scores.resize(measured.scores.size());
@@ -162,6 +186,7 @@ std::vector<MeasuredOutput> MeasuringSink::take(std::int64_t frame) {
       result.push_back(measured);
     }
   if (!result.empty()) state_->measured.push_back(frame);
+  state_->last_taken = frame;
   std::erase_if(state_->claimed, [&](const auto& claim) { return claim.second <= frame; });
   state_->frames.erase(state_->frames.begin(), state_->frames.lower_bound(frame));  // this one is needed by the next
   return result;
@@ -170,6 +195,15 @@ std::vector<MeasuredOutput> MeasuringSink::take(std::int64_t frame) {
 void MeasuringSink::forget(std::int64_t frame) {
   const std::lock_guard lock(state_->mutex);
   state_->frames.erase(state_->frames.begin(), state_->frames.upper_bound(frame));
+}
+
+void MeasuringSink::restart() {
+  const std::lock_guard lock(state_->mutex);
+  state_->frames.clear();
+  state_->claimed.clear();
+  state_->totals.clear();
+  state_->measured.clear();
+  state_->last_taken.reset();
 }
 
 std::vector<MeasuredOutput> MeasuringSink::totals() const {

@@ -20,6 +20,9 @@ struct MeasuringOptions {
   std::set<std::string, std::less<>> outputs;  ///< to be measured: color images
   std::vector<std::int64_t> frames;            ///< of the run, ascending
   CompareOptions compare;
+
+  /// Of a run of one frame, a single file is the reference whatever its number.
+  bool has_reference(std::int64_t frame) const { return reference.has(frame) || (reference.is_single() && frames.size() == 1); }
 };
 
 /// Figures of one output.
@@ -31,8 +34,9 @@ struct MeasuredOutput {
 
 /// Hands everything on to another sink, and then measures color outputs on the same thread, so that as many frames are measured
 /// at a time as are written. For temporal metrics, images are copied, and kept until the frame after theirs was taken. What is
-/// written does not depend on it: a frame that cannot be measured is told in a warning, and has no figures. Thread-safe, as long
-/// as the outputs of one frame are written one after the other.
+/// written does not depend on it: a frame that cannot be measured is told in a warning, and has no figures. Temporal metrics are
+/// about frames that both ended well. Figures are the same in whatever order frames are written. Thread-safe, as long as the
+/// outputs of one frame are written one after the other.
 class MeasuringSink final : public FrameSink {
  public:
   /// The other sink must outlive this one.
@@ -46,6 +50,8 @@ class MeasuringSink final : public FrameSink {
   std::vector<MeasuredOutput> take(std::int64_t frame);
   /// Of a frame that failed.
   void forget(std::int64_t frame);
+  /// All frames are written again. Not while one is.
+  void restart();
   /// The sums of what was taken, by output's name.
   std::vector<MeasuredOutput> totals() const;
   /// The frames that were taken and have figures.
@@ -58,6 +64,7 @@ class MeasuringSink final : public FrameSink {
   void measure(const std::string& output, std::int64_t frame, const Image& image);
   Image read_reference(std::int64_t frame);
   void measure_changes(const std::string& output, std::int64_t frame);
+  Image read_motion(std::int64_t frame, Size size);
   FrameSink& sink_;
   const MeasuringOptions options_;
   std::unique_ptr<State> state_;

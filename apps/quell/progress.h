@@ -43,6 +43,8 @@ class Progress {
   /// Tells the frame's result; a failed one by its reason, in every verbosity. Figures of a frame stand behind it, on a terminal,
   /// too, where its line is left out otherwise.
   void frame_done(const FrameReport& report, std::size_t bytes, const std::string& figures = "");
+  /// No frame is done: all are computed again.
+  void restart() { state_.done = 0; }
   double seconds() const;
 
  private:

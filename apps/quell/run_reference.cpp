@@ -24,6 +24,8 @@ std::vector<std::string> names_of_inputs(const Sequence& sequence) {
 
 /// An input of the job's sequence, or files as `quell compare` takes them.
 ImageSeries open_reference(const std::string& name, const SequenceArguments& arguments, const Job& job) {
+  if (name.empty())
+    throw Error(Fault::usage, "--reference", "the name is empty; name an input of the sequence, files or a folder");
   const std::vector<std::string> names = names_of_inputs(*job.sequence);
   if (std::ranges::find(names, name) != names.end()) return {job.sequence, name};
   std::error_code error;
@@ -54,24 +56,32 @@ std::set<std::string, std::less<>> color_outputs(const Job& job) {
   return outputs;
 }
 
-void refuse_to_replace(const ImageSeries& reference, const Job& job, const std::vector<ResultFiles>& results) {
+/// Inputs of the job's sequence are looked after with all others.
+void refuse_to_replace(const ImageSeries& measured_with, const char* what, const Job& job,
+                       const std::vector<ResultFiles>& results) {
+  if (measured_with.sequence() == job.sequence) return;
   for (const ResultFiles& series : results)
     for (std::size_t i = 0; i < series.files.size(); ++i) {
       std::error_code error;
-      if (fs::equivalent(series.files[i], reference.file(job.frames[i]), error))
-        throw Error(Fault::usage, "--out",
-                    "the results would replace " + series.files[i].string() + ", which is the reference; choose another folder");
+      if (fs::equivalent(series.files[i], measured_with.file(job.frames[i]), error))
+        throw Error(
+            Fault::usage, "--out",
+            "the results would replace " + series.files[i].string() + ", which is the " + what + "; choose another folder");
     }
 }
 
-void warn_of_missing_references(const ImageSeries& reference, const Job& job) {
+void warn_of_missing_references(const MeasuringOptions& options) {
+  const ImageSeries& reference = options.reference;
   std::vector<std::int64_t> missing;
-  for (const std::int64_t frame : job.frames)
-    if (!reference.has(frame)) missing.push_back(frame);
-  if (missing.size() == job.frames.size())
-    throw Error(
-        Fault::input, "--reference",
-        reference.files() + " has no file for any frame of the run; it has frames " + FrameRange(reference.frames()).text());
+  for (const std::int64_t frame : options.frames)
+    if (!options.has_reference(frame)) missing.push_back(frame);
+  if (missing.size() == options.frames.size()) {
+    const std::string have = FrameRange(reference.frames()).text();
+    throw Error(Fault::input, "--reference",
+                reference.is_single() ? reference.files() + " is a single file, of frame " + have + ", and the run has frames " +
+                                            FrameRange(missing).text() + "; name a file for each (reference.####.exr)"
+                                      : reference.files() + " has no file for any frame of the run; it has frames " + have);
+  }
   if (!missing.empty())
     spdlog::warn("--reference: {} has no file for {}, which will have no figures", reference.files(), FrameRange(missing).text());
 }
@@ -97,8 +107,9 @@ std::optional<MeasuringOptions> prepare_measuring(const ReferenceArguments& argu
   options.compare = parse_metric_options(
       arguments.metrics, default_metrics({Metric::psnr, Metric::ssim, Metric::flip}, {Metric::tpsnr}, job.frames));
   options.motion = find_motion(job, options.reference);
-  warn_of_missing_references(options.reference, job);
-  refuse_to_replace(options.reference, job, results);
+  warn_of_missing_references(options);
+  refuse_to_replace(options.reference, "reference", job, results);
+  if (options.motion) refuse_to_replace(*options.motion, "motion that frames are compared along", job, results);
   choose_display(options.compare, options.reference, arguments.metrics.display);
   return options;
 }
@@ -107,7 +118,7 @@ void complete_measuring(MeasuringOptions& options, int threads) {
   if (!contains(options.compare.metrics, Metric::hdr_flip)) return;
   std::vector<std::int64_t> frames;
   for (const std::int64_t frame : options.frames)
-    if (options.reference.has(frame)) frames.push_back(frame);
+    if (options.has_reference(frame)) frames.push_back(frame);
   Executor executor(threads);
   options.compare.exposures = find_exposures(options.reference, frames, executor, interrupted, [](std::size_t) {});
 }
@@ -136,8 +147,14 @@ void tell_measured(const MeasuringSink& sink) {
     if (total.bad_pixels > 0)
       spdlog::warn("{}: {} and left out of all figures", total.output, describe_bad_pixels(total.bad_pixels));
   }
-  if (const std::uint64_t bad = totals.front().bad_pixels_in_reference; bad > 0)
-    spdlog::warn("{}: {} and left out of all figures", options.reference.files(), describe_bad_pixels(bad));
+  std::uint64_t bad = 0;  // an output may have been measured in fewer frames than another
+  for (const MeasuredOutput& total : totals) bad = std::max(bad, total.bad_pixels_in_reference);
+  if (bad > 0) spdlog::warn("{}: {} and left out of all figures", options.reference.files(), describe_bad_pixels(bad));
+}
+
+void tell_new_warnings(const MeasuringOptions& options, Job& job) {
+  for (const std::string& warning : options.reference.sequence()->warnings())
+    if (job.told.insert(warning).second) spdlog::warn(warning);
 }
 
 void add_options(CLI::App& app, ReferenceArguments& arguments) {

@@ -35,6 +35,8 @@ void complete_measuring(MeasuringOptions& options, int threads);
 std::string describe(const MeasuringOptions& options);
 /// "  color: psnr 31.24 dB  ssim 0.9120", of each output; "" for none.
 std::string list_measured(const std::vector<MeasuredOutput>& measured, const std::vector<Metric>& metrics);
+/// What became known of the reference's files.
+void tell_new_warnings(const MeasuringOptions& options, Job& job);
 /// Figures of all frames, and a warning of pixels that were left out.
 void tell_measured(const MeasuringSink& sink);
 

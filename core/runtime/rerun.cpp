@@ -37,6 +37,7 @@ RerunReport RerunTurn::run() {
     std::optional<std::vector<FrameReport>> reports = compute();
     if (!reports) {
       start_anew(kUnsteady);
+      if (s_.on_restart) s_.on_restart();
       reports = compute();
     }
     finish(*reports);
@@ -157,6 +158,8 @@ RerunReport Rerun::run(std::shared_ptr<const Graph> graph, const std::vector<std
 }
 
 void Rerun::forget() { state_->forget(); }
+
+void Rerun::on_restart(std::function<void()> told) { state_->on_restart = std::move(told); }
 
 BufferPool::Usage Rerun::usage() const { return state_->usage(); }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -54,6 +55,9 @@ class Rerun {
                   FrameSink& sink, const SessionOptions& options = {}, std::map<std::string, std::string> labels = {});
   /// Everything counts as changed.
   void forget();
+  /// From now on this is called, on the caller's thread, when a run begins anew: what it had from the run before turned out not
+  /// to hold, so that the frames which it told and handed out until then are told and handed out again.
+  void on_restart(std::function<void()> told);
   /// Of all images, those remembered included. From on_frame, too.
   BufferPool::Usage usage() const;
 

@@ -20,6 +20,7 @@ namespace quell {
 struct RerunState {
   bool together = false;
   SessionOptions options;
+  std::function<void()> on_restart;           // may be null
   std::map<std::string, std::string> labels;  // of results
   Remembered memory;
   // Of the run before; no graph: there was none, or it is forgotten.

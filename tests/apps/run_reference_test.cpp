@@ -139,14 +139,27 @@ TEST_F(RunReference, IsMeasuredAnewWhenTheGraphIsSaved) {
   EXPECT_NE(outcome.err.substr(last, 23), outcome.err.substr(outcome.err.find("  color: psnr "), 23)) << outcome.err;
 }
 
-TEST_F(RunReference, ExplainsWhatCannotBe) {
+TEST_F(RunReference, OfASingleFrameMayBeASingleFileOfAnyNumber) {
   make_referenced_shot(2);
+  const Outcome outcome = run_small({"--reference", text("shot/reference.0002.exr"), "--frames", "1"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("\ncompared with " + text("shot/reference.0002.exr") + ", frame 1\n"));
+}
+
+TEST_F(RunReference, ExplainsWhatCannotBe) {
+  make_referenced_shot(3);
   const Outcome name = run_small({"--reference", "refrence"});
   EXPECT_EQ(name.code, 3);
   EXPECT_THAT(name.err, HasSubstr("--reference: the sequence has no input 'refrence'; did you mean 'reference'?"));
   const Outcome alone = run_small({"--metrics", "psnr"});
   EXPECT_EQ(alone.code, 2);
   EXPECT_THAT(alone.err, HasSubstr("--metrics: there is nothing to be measured; add --reference NAME"));
+  const Outcome empty = run_small({"--reference", ""});
+  EXPECT_EQ(empty.code, 2);
+  EXPECT_THAT(empty.err, HasSubstr("--reference: the name is empty; "));
+  const Outcome single = run_small({"--reference", text("shot/reference.0002.exr"), "--frames", "1,3"});
+  EXPECT_EQ(single.code, 3);
+  EXPECT_THAT(single.err, HasSubstr("reference.0002.exr is a single file, of frame 2, and the run has frames 1,3; "));
   EXPECT_EQ(run_small({}).code, 0);
   const Outcome itself = run_small({"--reference", text("out/color.####.exr")});
   EXPECT_EQ(itself.code, 2);

@@ -159,6 +159,20 @@ TEST_F(Reruns, AreWholeAfterFramesThatCannotBeReadOrHaveAnotherSize) {
   EXPECT_THAT(counts(report), ElementsAre(6, 6, 6, 6, 6));
 }
 
+TEST_F(Reruns, TellWhenFramesThatWereToldAreToldAgain) {
+  run(graph_text());
+  int restarts = 0;
+  std::vector<std::int64_t> told;
+  options.on_frame = [&](const FrameReport& report) { told.push_back(report.frame); };
+  rerun.on_restart([&] { ++restarts, told.clear(); });
+  source.unreadable = {5};
+  EXPECT_THAT(counts(run(graph_text(1, 20))), ElementsAre(5, 5, 5, 5, 5));
+  EXPECT_EQ(restarts, 1);
+  EXPECT_THAT(told, ElementsAre(1, 2, 3, 4, 5, 6));
+  run(graph_text(1, 21));
+  EXPECT_EQ(restarts, 1);
+}
+
 TEST_F(Reruns, NoticeThatANewlyReadInputIsNotThereInEveryFrame) {
   const auto text = [](const std::string& input) {
     return R"({ "quell": 1, "inputs": { "a": "color", "b": "color" }, "nodes": {
