@@ -113,7 +113,10 @@ Image ImageSeries::read(std::int64_t frame, BufferPool& pool) const {
 }
 
 bool ImageSeries::is_display_referred(BufferPool& pool) const {
-  const StoredImage stored = sequence_->read_stored(input_, single_.value_or(wanted_.front()), pool);
+  // Frames that are asked for may have no file.
+  const auto first = std::ranges::find_if(wanted_, [this](std::int64_t frame) { return has(frame); });
+  const std::int64_t frame = first == wanted_.end() ? frames_.front() : *first;
+  const StoredImage stored = sequence_->read_stored(input_, single_.value_or(frame), pool);
   return stored.conventions.transfer == Transfer::srgb;
 }
 

@@ -98,6 +98,14 @@ TEST_F(RunReference, FramesWithoutAReferenceHaveNoFigures) {
   EXPECT_EQ(frames[1].find("figures"), nullptr);
 }
 
+TEST_F(RunReference, MayLackTheFirstOfTheFramesThatAreAskedFor) {
+  make_referenced_shot(3);
+  std::filesystem::remove(path("shot/reference.0001.exr"));
+  const Outcome outcome = run_small({"--reference", "reference", "--frames", "1-3"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr(", frames 2-3\n"));
+}
+
 TEST_F(RunReference, OfAFrameThatFailedIsNotCounted) {
   make_referenced_shot(3);
   const Outcome outcome = run_small({"--reference", "reference"}, R"({ "at": [2] })");
