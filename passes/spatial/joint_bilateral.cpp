@@ -47,7 +47,7 @@ const PassInfo kInfo{
         " - (n.(p'-p)/|p'-p|)^2/2 sigma_plane^2). The last term is 0 where the points coincide. Terms whose inputs are absent are"
         " left out. Taps outside the image are left out, and so are those that have no surface (normal 0) or are not finite;"
         " such a pixel keeps its own color. Normals have unit length, colors are below 1e18 and positions below 1e9. Within"
-        " 1e-4 of double precision for a sigma_plane of 0.02 and more.",
+        " 1e-4 of double precision for a sigma_plane of 0.1 and more.",
     .source =
         "Eisemann & Durand, Flash Photography Enhancement via Intrinsic Relighting, SIGGRAPH 2004; Petschnigg et al., Digital"
         " Photography with Flash and No-Flash Image Pairs, SIGGRAPH 2004; the set of terms is that of GAMES202, homework 5."

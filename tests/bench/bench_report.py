@@ -34,7 +34,7 @@ def _read(path):
 def read_results(path):
     """What merge() wrote."""
     results = _read(path)
-    if not isinstance(results, dict) or not isinstance(results.get("benchmarks"), dict):
+    if not isinstance(results, dict) or not {"machine", "commit", "date", "programs", "benchmarks"} <= results.keys():
         raise WrongFile(f"{path}: it is not a bench.json, as tests/bench/run writes it")
     return results
 

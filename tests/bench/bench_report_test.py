@@ -59,6 +59,12 @@ class Merge(unittest.TestCase):
     def test_refuses_what_is_no_report(self):
         with self.assertRaisesRegex(bench_report.WrongFile, "README.md"):
             bench_report.read_results(os.path.join(FOLDER, "README.md"))
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "other.json")
+            with open(path, "w", encoding="utf-8") as file:
+                json.dump({"benchmarks": {}}, file)  # as a program's own report, which has a context
+            with self.assertRaisesRegex(bench_report.WrongFile, "other.json: it is not a bench.json"):
+                bench_report.read_results(path)
 
 
 class Compare(unittest.TestCase):

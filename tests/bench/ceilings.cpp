@@ -33,25 +33,42 @@ namespace quell::bench {
 
 enum class Op { fma, add, mul, min_max, divide, root, estimate, shift, logic };
 
-// The operations of a mix in an order in which each kind is spread evenly.
+constexpr int kChains = 10;  // sums of multiply-adds: as many as hide their latency
+constexpr int kCacheLines = 8;
+
+// An operation of a mix. A multiply-add goes to the chain behind that of the one before; the second operand of some is loaded.
+struct Step {
+  Op op;
+  int chain;
+  int line;  // that is loaded; -1: none
+};
+
+// The operations of a mix in an order in which each kind is spread evenly, and so are loads.
 template <Mix kMix>
 constexpr auto spread() {
   constexpr int kCounts[] = {kMix.fma,  kMix.add,      kMix.mul,   kMix.min_max, kMix.divide,
                              kMix.root, kMix.estimate, kMix.shift, kMix.logic};
-  std::array<Op, static_cast<std::size_t>(kMix.operations())> order{};
+  constexpr int kAll = kMix.operations();
+  std::array<Step, static_cast<std::size_t>(kAll)> steps{};
   int done[std::size(kCounts)] = {};
-  for (std::size_t i = 0; i < order.size(); ++i) {
+  for (int i = 0; i < kAll; ++i) {
     std::size_t next = 0;
     double largest = -1;
     for (std::size_t k = 0; k < std::size(kCounts); ++k) {
-      const double behind = static_cast<double>(i + 1) * kCounts[k] / kMix.operations() - done[k];
+      const double behind = static_cast<double>(i + 1) * kCounts[k] / kAll - done[k];
       if (done[k] < kCounts[k] && behind > largest) largest = behind, next = k;
     }
+    const bool loads = (i + 1) * kMix.load / kAll > i * kMix.load / kAll;
+    const auto op = static_cast<Op>(next);
+    steps[static_cast<std::size_t>(i)] = {op, op == Op::fma ? done[next] % kChains : 0, loads ? i % kCacheLines : -1};
     ++done[next];
-    order[i] = static_cast<Op>(next);
   }
-  return order;
+  return steps;
 }
+
+// Once for all vector units: a compiler takes minutes when each step asks anew.
+template <Mix kMix>
+constexpr auto kSteps = spread<kMix>();
 
 }  // namespace quell::bench
 #endif
@@ -69,12 +86,11 @@ HWY_INLINE void may_change(V& v) { asm volatile("" : "+" QUELL_VECTOR_REGISTER(v
 HWY_INLINE void need(V v) { asm volatile("" : : QUELL_VECTOR_REGISTER(v.raw)); }
 #undef QUELL_VECTOR_REGISTER
 
-// Sums of multiply-adds: as many as hide their latency. Members instead of an array, which would lie in memory.
+// Members instead of an array, which would lie in memory.
 struct Chains {
   V c0, c1, c2, c3, c4, c5, c6, c7, c8, c9;
 };
-constexpr std::size_t kChains = 10;
-template <std::size_t kIndex>
+template <int kIndex>
 HWY_INLINE V& chain_of(Chains& c) {
   if constexpr (kIndex == 0) return c.c0;
   if constexpr (kIndex == 1) return c.c1;
@@ -110,33 +126,27 @@ HWY_INLINE void operate(V& chain, V& a, V b) {
   if constexpr (kOp == Op::logic) need(hn::And(a, b));
 }
 
-template <Mix kMix, std::size_t kIndex>
-HWY_INLINE void step(Chains& chains, V& a, V b, const float* memory) {
-  constexpr auto kOrder = spread<kMix>();
-  // Each multiply-add to the chain behind that of the one before.
-  constexpr std::size_t kChain = static_cast<std::size_t>(std::count(kOrder.begin(), kOrder.begin() + kIndex, Op::fma)) % kChains;
-  constexpr std::size_t kCount = kOrder.size(), kLoads = static_cast<std::size_t>(kMix.load);
-  // Loads are the second operand of operations that are spread evenly.
-  constexpr bool kLoadsHere = (kIndex + 1) * kLoads / kCount > kIndex * kLoads / kCount;
-  if constexpr (kLoadsHere) b = hn::LoadU(D(), memory + kIndex % 8 * kMaxLanes);
-  operate<kOrder[kIndex]>(chain_of<kChain>(chains), a, b);
+template <Step kStep>
+HWY_INLINE void take(Chains& chains, V& a, V b, const float* memory) {
+  if constexpr (kStep.line >= 0) b = hn::LoadU(D(), memory + kStep.line * kMaxLanes);
+  operate<kStep.op>(chain_of<kStep.chain>(chains), a, b);
 }
 
 template <Mix kMix, std::size_t... kIndices>
-HWY_INLINE void all_steps(Chains& chains, V& a, V b, const float* memory, std::index_sequence<kIndices...>) {
-  (step<kMix, kIndices>(chains, a, b, memory), ...);
+HWY_INLINE void take_all(Chains& chains, V& a, V b, const float* memory, std::index_sequence<kIndices...>) {
+  (take<kSteps<kMix>[kIndices]>(chains, a, b, memory), ...);
 }
 
 template <Mix kMix>
 void run_mix(std::int64_t rounds) {
-  HWY_ALIGN float memory[8 * kMaxLanes];
-  std::fill_n(memory, 8 * kMaxLanes, 1.0F);
+  HWY_ALIGN float memory[kCacheLines * kMaxLanes];
+  std::fill_n(memory, kCacheLines * kMaxLanes, 1.0F);
   Chains chains = no_sums();
   V a = set(1.0F);
   const V b = set(1.0F);
   for (std::int64_t i = 0; i < rounds; ++i) {
     asm volatile("" : : "r"(memory) : "memory");
-    all_steps<kMix>(chains, a, b, memory, std::make_index_sequence<static_cast<std::size_t>(kMix.operations())>());
+    take_all<kMix>(chains, a, b, memory, std::make_index_sequence<kSteps<kMix>.size()>());
   }
   need(chains);
 }
@@ -187,7 +197,6 @@ namespace {
 constexpr int kRepeats = 5;
 constexpr std::int64_t kFmaRounds = 3'000'000;  // some 10 ms
 constexpr std::int64_t kMixOperations = 40'000'000;
-constexpr int kFmasOfRound = 10;
 
 double best_of_repeats(const std::function<double()>& seconds) {
   double best = seconds();
@@ -242,7 +251,7 @@ double measure_peak_flops(int threads) {
       (kFmaRounds);
     });
   });
-  return 2.0 * kFmasOfRound * vector_lanes() * static_cast<double>(kFmaRounds) * threads / seconds;
+  return 2.0 * kChains * vector_lanes() * static_cast<double>(kFmaRounds) * threads / seconds;
 }
 
 const Mix& mix_of(Kernel kernel) {

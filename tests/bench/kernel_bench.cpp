@@ -18,6 +18,30 @@ std::string text(Size size) { return std::to_string(size.width) + "x" + std::to_
 
 namespace {
 
+// What the machine can do at best, in the same run as what it is compared with.
+void add_ceiling(const std::string& name, const char* unit, double divisor, const std::function<double()>& measure) {
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [=](benchmark::State& state) {
+                                 double figure = 0;
+                                 for ([[maybe_unused]] auto _ : state) figure = measure();
+                                 state.counters[unit] = figure / divisor;
+                               })
+      ->Unit(benchmark::kMillisecond)
+      ->Iterations(1);
+}
+
+void add_ceiling_benchmarks() {
+  for (const int threads : thread_counts()) {
+    const std::string suffix = "/threads:" + std::to_string(threads);
+    add_ceiling("ceiling/copy" + suffix, "GB/s", 1e9, [=] { return measure_copy_bandwidth(threads); });
+    add_ceiling("ceiling/fma" + suffix, "GFLOP/s", 1e9, [=] { return measure_peak_flops(threads); });
+    add_ceiling("ceiling/issue/joint_bilateral" + suffix, "ns/tap", 1e-9,
+                [=] { return measure_issue_bound(Kernel::joint_bilateral, threads); });
+    add_ceiling("ceiling/issue/atrous_svgf" + suffix, "ns/px", 1e-9,
+                [=] { return measure_issue_bound(Kernel::atrous, threads); });
+  }
+}
+
 void report_cost(benchmark::State& state, double seconds, const Work& work) {
   state.counters["ns/px"] = seconds * 1e9 / work.pixels;
   state.counters["ns/tap"] = seconds * 1e9 / work.taps;

@@ -7,7 +7,6 @@
 
 namespace quell::bench {
 
-void add_ceiling_benchmarks();
 void add_joint_bilateral_benchmarks();
 void add_atrous_benchmarks();
 

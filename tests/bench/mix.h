@@ -54,6 +54,6 @@ constexpr Mix kAtrousSlope{.add = 2, .mul = 1, .logic = 13, .load = 3};
 constexpr Mix kAtrousGain{.fma = 3, .add = 2, .mul = 2, .min_max = 2, .divide = 1, .root = 1, .load = 6};  // with the blur
 constexpr Mix kAtrousMix = kAtrousTap * 24 + kAtrousPair * 12 + kAtrousSlope * 2 + kAtrousGain +
                            Mix{.add = 3, .mul = 1, .min_max = 1, .logic = 1, .load = 8} +  // pixel()
-                           Mix{.add = 5, .mul = 10, .divide = 1, .logic = 5, .load = 8};   // the tap in the middle, the quotients
+                           Mix{.add = 5, .mul = 9, .divide = 1, .logic = 5, .load = 8};    // the tap in the middle, the quotients
 
 }  // namespace quell::bench

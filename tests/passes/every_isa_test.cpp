@@ -44,7 +44,7 @@ std::vector<Mode> modes() {
 
 class EveryIsa : public ::testing::TestWithParam<Mode> {
  protected:
-  void TearDown() override { pin_isa("best", "test"); }
+  void SetUp() override { pin_isa("best", "test"); }  // whatever QUELL_ISA says, and a test before
 
   /// What the pass computes on the unit that is pinned, on an image of several tiles.
   static Results compute(int grain = 0, int threads = 1) {
@@ -106,6 +106,7 @@ TEST_P(EveryIsa, AgreesWithTheBest) {
   for (const std::string& isa : isas()) {
     pin_isa(isa, "test");
     const Results got = compute();
+    ASSERT_EQ(got.size(), want.size());
     for (std::size_t i = 0; i < want.size(); ++i)
       if (want[i].second.image()) expect_close(*want[i].second.image(), *got[i].second.image(), want[i].first + " on " + isa);
   }

@@ -137,6 +137,9 @@ std::vector<Case> all_cases() {
     for (const bool world : {false, true}) cases.push_back({.world = world, .sigma_coord = length, .sigma_normal = 0.4});
   // Every weight close to 1, so that every tap's error counts.
   cases.push_back({.radius = 12, .sigma_coord = 1e3, .sigma_color = 30, .sigma_normal = 2, .sigma_plane = 2});
+  // Angles, and heights over the plane, of weights that are small, but of so many taps that they count.
+  cases.push_back({.radius = 16, .sigma_coord = 1e6, .sigma_color = 1e3, .sigma_normal = 0.2, .sigma_plane = 1e6});
+  cases.push_back({.radius = 16, .sigma_coord = 1e6, .sigma_color = 1e3, .sigma_normal = 1e6, .sigma_plane = 0.1});
   return cases;
 }
 
