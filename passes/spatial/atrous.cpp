@@ -23,7 +23,7 @@ enum class PhiColor { same, halved, quartered };
 struct Params {
   int level = 0;
   Stops stops = Stops::svgf;
-  double sigma_z = 1, eps_z = 1e-6, sigma_n = 128, sigma_l = 4;
+  double sigma_z = 1, eps_z = 1e-6, sigma_n = 128, sigma_l = 4, eps_l = 1e-8, eps_variance = 0;
   double phi_color = 1, phi_normal = 0.1, phi_position = 1;
   PhiColor phi_color_per_level = PhiColor::quartered;
   double sigma_color = 0.8, sigma_normal = 0.1, sigma_plane = 0.1, sigma_coord = 32;
@@ -35,10 +35,13 @@ struct Params {
                   {"joint_bilateral", "the terms of the joint bilateral filter, at these taps"}},
           "What tells an edge.");
     field("sigma_z", sigma_z, Range<double>{0, 1e6}, "1", "svgf: tolerated difference in depth, over what the slope explains.");
-    field("eps_z", eps_z, Range<double>{1e-8, 1}, "1",
+    field("eps_z", eps_z, Range<double>{0, 1}, "1",
           "svgf: difference in depth that is tolerated anyway, over the depth. Floats need 1e-7, half floats 1e-3.");
     field("sigma_n", sigma_n, Range<double>{1, 1024}, "1", "svgf: power of the cosine between normals.");
     field("sigma_l", sigma_l, Range<double>{0, 1e6}, "1", "svgf: tolerated difference in luminance, over its deviation.");
+    field("eps_l", eps_l, Range<double>{0, 1e6}, "radiance", "svgf: difference in luminance that is tolerated anyway.");
+    field("eps_variance", eps_variance, Range<double>{0, 1e6}, "radiance^2",
+          "svgf: added to the variance that luminances are judged by.");
     field("phi_color", phi_color, Range<double>{1e-12, 1e12}, "radiance^2",
           "dammertz: tolerated squared distance of color, at level 0.");
     field("phi_color_per_level", phi_color_per_level,
@@ -63,31 +66,27 @@ const PassInfo kInfo{
     .id = "atrous",
     .summary = "One level of the edge-avoiding à-trous wavelet, with the stops of SVGF, Dammertz or the joint bilateral filter",
     .doc =
-        "color = sum h w c' / sum h w over 5 x 5 taps that are step = 2^level pixels apart; h is 3/8, 1/4, 1/16 at 0, 1 and 2 "
-        "steps in"
-        " x, times the same in y. variance = sum h^2 w^2 variance' / (sum h w)^2.\n\n"
-        "svgf: w = exp(-|z-z'| / (sigma_z |grad z.(p-p')| + eps_z z)) max(0, n.n')^sigma_n exp(-|l-l'| / (sigma_l deviation + "
-        "1e-8))."
-        " l is luminance; the deviation is the root of the blurred variance, or, when that is absent, of the variance blurred "
-        "here by"
-        " 1/4, 1/2, 1/4 in x and y. Of grad z, each component is the smaller of the differences to the two neighbors. When the"
-        " depth's gradient is given, it replaces |grad z.(p-p')| by the gradient times the distance of the taps.\n\n"
+        "color = sum h w c' / sum h w over 5 x 5 taps that are step = 2^level pixels apart; h is 3/8, 1/4, 1/16 at 0, 1 and 2"
+        " steps in x, times the same in y. variance = sum h^2 w^2 variance' / (sum h w)^2.\n\n"
+        "svgf: w = exp(-|z-z'| / (sigma_z |grad z.(p-p')| + eps_z z)) max(0, n.n')^sigma_n"
+        " exp(-|l-l'| / (sigma_l deviation + eps_l)). l is luminance; the deviation is the root of eps_variance plus the blurred"
+        " variance, or, when that input is absent, plus the variance blurred here by 1/4, 1/2, 1/4 in x and y. Of grad z, each"
+        " component is the smaller of the differences to the two neighbors. When the depth's gradient is given, it replaces"
+        " |grad z.(p-p')| by the gradient times the distance of the taps.\n\n"
         "dammertz: w = exp(-|c-c'|^2 / phi - |n-n'|^2 / (phi_normal step^2) - |p-p'|^2 / phi_position).\n\n"
         "joint_bilateral: w is that of the pass joint_bilateral with distances in pixels.\n\n"
-        "Terms whose inputs are absent are left out, and so are taps outside the image, taps without surface (normal 0, or, with "
-        "svgf,"
-        " depth 1e10) and taps that are not finite; such a pixel keeps its own color and variance. Normals have unit length."
-        " Luminances are below 1e9, and sigma_l times a deviation below 1e15. Within 1e-4 of double precision for a sigma_n up "
-        "to 128,"
-        " luminances up to 40 sigma_l deviations, and a sigma_plane from 0.02 on.",
+        "Terms whose inputs are absent are left out, and so are taps outside the image, taps without surface (normal 0, or,"
+        " with svgf, depth 1e10) and taps that are not finite; such a pixel keeps its own color and variance. Normals have unit"
+        " length. Luminances and positions are below 1e9, and sigma_l times a deviation below 1e15. Within 1e-4 of double"
+        " precision for a sigma_n up to 128, luminances up to 40 sigma_l deviations, a sigma_plane from 0.02 on, and taps up to"
+        " 1000 times as bright as the pixel, 10 times for a sigma_n of 64. Fireflies behind a bend of the surface count with"
+        " a weight that has the fewer right digits the smaller it is.",
     .source =
-        "Dammertz et al., Edge-Avoiding À-Trous Wavelet Transform for fast Global Illumination Filtering, HPG 2010; Schied et "
-        "al.,"
-        " Spatiotemporal Variance-Guided Filtering, HPG 2017, equations 3 to 5; joint_bilateral: GAMES202, homework 5."
-        " Departs: in svgf, eps_z is a fraction of the depth, which is not between 0 and 1 here, and without an input for it the"
-        " gradient is taken within the pixel's surface; with one, the formula is that of the implementation in Falcor. The "
-        "course's"
-        " filter has no spline.",
+        "Dammertz et al., Edge-Avoiding À-Trous Wavelet Transform for fast Global Illumination Filtering, HPG 2010; Schied"
+        " et al., Spatiotemporal Variance-Guided Filtering, HPG 2017, equations 3 to 5; joint_bilateral: GAMES202, homework 5."
+        " Departs: in svgf, eps_z is a fraction of the depth, which is not between 0 and 1 here, and without an input for it"
+        " the gradient is taken within the pixel's surface; with one, and with eps_z 0, eps_l 0, eps_variance 1e-10 and"
+        " sigma_l 10, the formula is that of the implementation in Falcor. The course's filter has no spline.",
     .inputs = {{"color", kColor, "what is filtered"},
                {"normal", kNormal, "guide", true},
                {"position", kPosition, "guide of dammertz and joint_bilateral", true},
@@ -119,6 +118,8 @@ atrous::Settings make_settings(const Params& p) {
     s.depth_eps = static_cast<float>(p.eps_z / kLog2E);
     s.normal_power = static_cast<float>(p.sigma_n * kLog2E);
     s.luminance_factor = static_cast<float>(p.sigma_l / kLog2E);
+    s.luminance_eps = static_cast<float>(p.eps_l / kLog2E);
+    s.variance_eps = static_cast<float>(p.eps_variance);
     s.wide_normals = p.sigma_n < atrous::kSmallestNarrowPower;
   } else if (p.stops == Stops::dammertz) {
     const int halvings = p.phi_color_per_level == PhiColor::same ? 0 : p.phi_color_per_level == PhiColor::halved ? 1 : 2;

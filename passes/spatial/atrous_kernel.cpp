@@ -4,10 +4,12 @@
 // exactly 0. The loop over the taps is then the formula alone, without an edge or a mask in it.
 //
 // Error of a weight h 2^-E, relative: 3.8e-6 (2^x) + 2e-7 E (roundings), with svgf + 1.5e-7 sigma_n (the cosine is a sum of
-// rounded products) + 6e-7 l / (sigma_l deviation) (so are luminances, whose difference counts), with joint_bilateral + 4.0e-6 E
+// rounded products) + 6e-7 l / (sigma_l deviation) (so are luminances, whose difference counts), with joint_bilateral + 4.3e-6 E
 // (angle) + 2e-7 / sigma_plane sqrt(2 E) (the height over the plane is a difference). The pixel itself weighs 9/64, so that taps
 // of large E are outweighed, and a result errs by at most twice that, a variance by four times. With sigma_n = 128 and luminances
-// up to 40 sigma_l deviations that is 1e-4 at the very worst; roundings mostly cancel, and the tests see 1e-5.
+// up to 40 sigma_l deviations that is 1e-4 at the very worst; roundings mostly cancel, and the tests see 1e-5. Only fireflies are
+// not outweighed: then it counts that the series of the cosine's power is right to 1.5e-6 absolutely, and to 1.4e-4 relatively
+// while (n.n')^128 is above 2e-4.
 #include "passes/spatial/atrous_kernel.h"
 
 #include <algorithm>

@@ -31,15 +31,17 @@ struct Settings {
   std::array<float, 12> offset_exponents{};  ///< by pair: what depends on the offset alone
 
   /// For svgf, where each is for e itself.
-  float slope_factor = 0;      ///< of the depth's gradient; it and the next are in a denominator
+  float slope_factor = 0;      ///< of the change of depth; it and the next are in a denominator
   float depth_eps = 0;         ///< of the depth
   float normal_power = 0;      ///< of -ln(n.n')
-  float luminance_factor = 0;  ///< of the deviation; in a denominator
+  float luminance_factor = 0;  ///< of the deviation; it and the next are in a denominator
+  float luminance_eps = 0;     ///< radiance
+  float variance_eps = 0;      ///< radiance^2, added to the variance
 
   bool wide_normals = false;  ///< svgf: a sigma below kSmallestNarrowPower; joint_bilateral: above kLargestNarrowSigma
 };
 
-/// From this sigma_n on, (n.n')^sigma_n is within 1.4e-6 with a short series.
+/// From this sigma_n on, (n.n')^sigma_n is within 1.5e-6 with a short series.
 inline constexpr double kSmallestNarrowPower = 64;
 /// Up to this sigma_normal (rad) a weight at 60 degrees is below 1.2e-6, and what a tap beyond that weighs does not matter.
 inline constexpr double kLargestNarrowSigma = 0.2;

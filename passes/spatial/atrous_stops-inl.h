@@ -21,8 +21,9 @@ using namespace simd::HWY_NAMESPACE;  // NOLINT: the vocabulary of kernels
 constexpr float kFar = 1e18F;    // in the carrier: a tap that does not count; its square is still finite
 constexpr float kTiny = 1e-36F;  // added to squared distances, which are then never 0
 constexpr float kNoSurface = QUELL_NO_SURFACE_DEPTH;
-constexpr float kNoGain = 1e-15F;  // with it luminances do not matter, but kFar does
-constexpr float kLn2 = 0.69314718F;
+constexpr float kSteepest = 1e20F;            // that a slope counts for: times a factor it is still finite
+constexpr float kNoGain = 1e-15F;             // with it luminances do not matter, but kFar does
+constexpr float kSmallestTolerance = 1e-15F;  // so that no difference is divided by 0
 
 using Mask = hn::Mask<D>;
 
@@ -57,11 +58,12 @@ struct SvgfStops {
     const V3 normal = in.normal ? pixels3(in.normal, x, y) : V3{zero(), zero(), set(1.0F)};
     if (in.normal) counts = hn::And(counts, is_surface(normal));
     const V depth = in.depth ? pixels(in.depth, x, y) : zero();
-    counts = hn::And(counts, hn::Lt(hn::Abs(depth), set(kNoSurface)));
+    const Mask has_depth = hn::Lt(hn::Abs(depth), set(kNoSurface));
+    counts = hn::And(counts, has_depth);
     const V variance = in.variance ? pixels(in.variance, x, y) : zero();
     counts = hn::And(counts, is_finite(variance));
     put(keep(counts, color), to, 0);
-    put(hn::IfThenElse(counts, depth, set(kNoSurface)), to, kDepth);
+    put(hn::IfThenElse(has_depth, depth, set(kNoSurface)), to, kDepth);  // of taps that do not count, too: slopes need it
     put(keep(counts, normal), to, kNormal);
     put(hn::IfThenElseZero(counts, variance), to, kVariance);
     put(hn::IfThenElse(counts, luminance(color), set(kFar)), to, kCarrier);
@@ -74,7 +76,8 @@ struct SvgfStops {
     for (int x = left; x < right; x += lanes(), center += lanes(), to += lanes()) {
       put(luminance_gain(to + kColumns * kStride, x, y), to, kGain);
       if constexpr (kScalarGradient) {
-        put(hn::Mul(hn::Abs(pixels(in.depth_gradient, x, y)), set(s.slope_factor)), to, kSlope);
+        const V slope = hn::Min(hn::Abs(pixels(in.depth_gradient, x, y)), set(kSteepest));
+        put(hn::Mul(slope, set(s.slope_factor)), to, kSlope);
       } else {
         const V depth = at(center, kDepth);
         put(slope(depth, at(center - 1, kDepth), at(center + 1, kDepth)), to, kSlope);
@@ -90,7 +93,7 @@ struct SvgfStops {
   };
   HWY_INLINE Pixel pixel(const float* center, const float* prepared) const {
     const V depth = at(center, kDepth);
-    const V eps = hn::Max(hn::Mul(hn::Abs(depth), set(s.depth_eps)), set(1e-15F));
+    const V eps = hn::Max(hn::Mul(hn::Abs(depth), set(s.depth_eps)), set(kSmallestTolerance));
     return {at(center, kCarrier),
             at(prepared, kGain),
             depth,
@@ -105,8 +108,9 @@ struct SvgfStops {
     if constexpr (kScalarGradient) {
       return reciprocal(hn::MulAdd(p.slope_x, set(kPairs[i].length), p.eps));
     } else {
+      // Differences of depths are mostly exact, so that what cancels here is, too; only then the factor.
       const V change = hn::MulAdd(p.slope_x, set(kPairs[i].dx), hn::Mul(p.slope_y, set(kPairs[i].dy)));
-      return reciprocal(hn::Add(hn::Abs(change), p.eps));
+      return reciprocal(hn::MulAdd(hn::Abs(change), set(s.slope_factor), p.eps));
     }
   }
 
@@ -132,7 +136,7 @@ struct SvgfStops {
     const V back = hn::IfThenElse(hn::Lt(hn::Abs(before), none), hn::Sub(middle, before), none);
     const V ahead = hn::IfThenElse(hn::Lt(hn::Abs(after), none), hn::Sub(after, middle), none);
     const V smaller = hn::IfThenElse(hn::Lt(hn::Abs(ahead), hn::Abs(back)), ahead, back);
-    return hn::IfThenElseZero(hn::Lt(hn::Abs(smaller), none), hn::Mul(smaller, set(s.slope_factor)));
+    return hn::IfThenElseZero(hn::Lt(hn::Abs(smaller), none), smaller);
   }
 
   // The variance is blurred by 1/4, 1/2, 1/4 down the columns, and then along the row. A neighbor outside of the image is made up
@@ -160,8 +164,9 @@ struct SvgfStops {
     const V variance = in.blurred_variance
                            ? pixels(in.blurred_variance, x, y)
                            : blur(hn::LoadU(D(), columns - 1), hn::LoadU(D(), columns), hn::LoadU(D(), columns + 1));
-    const V deviation = hn::Sqrt(hn::Max(variance, zero()));
-    return hn::Max(hn::Div(set(1.0F), hn::MulAdd(deviation, set(s.luminance_factor), set(1e-8F * kLn2))), set(kNoGain));
+    const V deviation = hn::Sqrt(hn::Max(hn::Add(variance, set(s.variance_eps)), zero()));
+    const V tolerated = hn::Max(hn::MulAdd(deviation, set(s.luminance_factor), set(s.luminance_eps)), set(kSmallestTolerance));
+    return hn::Max(hn::Div(set(1.0F), tolerated), set(kNoGain));
   }
 };
 

@@ -37,10 +37,10 @@ struct Case {
   std::string phi_color_per_level = "quartered";
 
   double param(const std::string& name) const {
-    static const std::map<std::string, double> kDefaults{{"sigma_z", 1},       {"eps_z", 1e-6},      {"sigma_n", 128},
-                                                         {"sigma_l", 4},       {"phi_color", 1},     {"phi_normal", 0.1},
-                                                         {"phi_position", 1},  {"sigma_color", 0.8}, {"sigma_normal", 0.1},
-                                                         {"sigma_plane", 0.1}, {"sigma_coord", 32}};
+    static const std::map<std::string, double> kDefaults{
+        {"sigma_z", 1},        {"eps_z", 1e-6},      {"sigma_n", 128},    {"sigma_l", 4},      {"eps_l", 1e-8},
+        {"eps_variance", 0},   {"phi_color", 1},     {"phi_normal", 0.1}, {"phi_position", 1}, {"sigma_color", 0.8},
+        {"sigma_normal", 0.1}, {"sigma_plane", 0.1}, {"sigma_coord", 32}};
     return params.count(name) ? params.at(name) : kDefaults.at(name);
   }
   bool has(const std::string& input) const { return without.count(input) == 0; }
@@ -54,7 +54,8 @@ inline double noise(int x, int y, int c) {
   return static_cast<double>((h ^ (h >> 16)) & 0xffffff) / 0x1000000;
 }
 
-// A wavy surface with holes, a few fireflies, columns that face anywhere, and a step of depth in the middle.
+// A wavy surface with holes, some of which still have a depth, a few fireflies, columns that face anywhere, and a step of depth
+// in the middle.
 inline Scene make_scene(const Case& c) {
   const auto is_hole = [](int x, int y) { return (x / 3 + y / 4) % 5 == 4; };
   const auto normal = [=](int x, int y, int k) {
@@ -68,7 +69,7 @@ inline Scene make_scene(const Case& c) {
     return static_cast<float>(p[static_cast<std::size_t>(k)]);
   };
   const auto depth = [=](int x, int y, int) {
-    if (is_hole(x, y)) return QUELL_NO_SURFACE_DEPTH;
+    if (is_hole(x, y) && (x + y) % 3 != 0) return QUELL_NO_SURFACE_DEPTH;
     return static_cast<float>(5 + 0.05 * x - 0.1 * y + 0.02 * noise(x, y, 4) + (3 * x > y + 50 ? 7 : 0));
   };
   const auto color = [](int x, int y, int k) {
@@ -163,7 +164,8 @@ class Reference {
   double w_l(int x, int y, int qx, int qy) const {
     if (!has("variance") && !has("blurred_variance")) return 1;
     const double variance = has("blurred_variance") ? at("blurred_variance", x, y) : blurred(x, y);
-    return std::exp(-std::abs(luminance(x, y) - luminance(qx, qy)) / (p("sigma_l") * std::sqrt(variance) + 1e-8));
+    return std::exp(-std::abs(luminance(x, y) - luminance(qx, qy)) /
+                    (p("sigma_l") * std::sqrt(variance + p("eps_variance")) + p("eps_l")));
   }
   double blurred(int x, int y) const {
     double sum = 0, weights = 0;

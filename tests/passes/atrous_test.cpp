@@ -53,9 +53,11 @@ std::vector<Case> all_cases() {
     for (const double value : values) cases.push_back({.stops = stops, .level = 1, .size = {40, 20}, .params = {{name, value}}});
   };
   with("svgf", "sigma_z", {0, 0.1, 10, 1e6});
-  with("svgf", "eps_z", {1e-8, 1e-3, 1});
+  with("svgf", "eps_z", {0, 1e-8, 1e-3, 1});
   with("svgf", "sigma_n", {1, 2, 10.5, 63, 64, 65, 300});
   with("svgf", "sigma_l", {0, 0.1, 100, 1e6});
+  with("svgf", "eps_l", {0, 0.3});
+  with("svgf", "eps_variance", {1e-10, 0.1});
   for (const char* name : {"phi_color", "phi_normal", "phi_position"}) with("dammertz", name, {1e-6, 1e-2, 100, 1e12});
   for (const char* change : {"same", "halved"}) cases.push_back({.stops = "dammertz", .level = 2, .phi_color_per_level = change});
   with("joint_bilateral", "sigma_coord", {1e-3, 2, 1e6});
@@ -83,36 +85,68 @@ struct Expected {
   Scene scene;
   std::vector<Reference::Filtered> pixels;
 };
-const std::vector<Expected>& all_expected() {
-  static const std::vector<Expected> kAll = [] {
-    std::vector<Expected> all;
-    for (const Case& c : all_cases()) {
-      Expected expected{c, make_scene(c), {}};
-      const Reference reference(c, expected.scene);
-      for (int y = 0; y < c.size.height; ++y)
-        for (int x = 0; x < c.size.width; ++x) expected.pixels.push_back(reference.filter(x, y));
-      all.push_back(std::move(expected));
+Expected expected_of(const Case& c, const Scene& scene) {
+  Expected expected{c, scene, {}};
+  const Reference reference(c, scene);
+  for (int y = 0; y < c.size.height; ++y)
+    for (int x = 0; x < c.size.width; ++x) expected.pixels.push_back(reference.filter(x, y));
+  return expected;
+}
+// 1e-4 is the error that the pass promises, and the budget in its kernel. The absolute part is a rounding of the brightest color.
+void expect_matches(const Expected& expected, const std::string& name) {
+  const Size size = expected.c.size;
+  const Result got = run(expected.c, expected.scene);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const Reference::Filtered& want = expected.pixels[static_cast<std::size_t>(y * size.width + x)];
+      const auto where = [&, px = x, py = y] { return std::to_string(px) + "," + std::to_string(py) + " of " + name; };
+      for (std::size_t k = 0; k < 3; ++k)
+        ASSERT_NEAR(pixel(got.color, x, y)[k], want.color[k], 1e-4 * want.color[k] + 1e-6) << where();
+      ASSERT_NEAR(got.variance.floats().at(x, y), want.variance, 2e-4 * want.variance + 1e-8) << where();
     }
-    return all;
-  }();
-  return kAll;
 }
 
-// 1e-4 is the error that the pass promises, and the budget in its kernel. The absolute part is a rounding of the brightest color.
 TEST_P(AtrousOnTarget, MatchesTheFormulasInDoublePrecision) {
-  for (const Expected& expected : all_expected()) {
-    const Size size = expected.c.size;
-    const Result got = run(expected.c, expected.scene);
-    for (int y = 0; y < size.height; ++y)
-      for (int x = 0; x < size.width; ++x) {
-        const Reference::Filtered& want = expected.pixels[static_cast<std::size_t>(y * size.width + x)];
-        const auto where = [&, px = x, py = y] {
-          return std::to_string(px) + "," + std::to_string(py) + " of case " + std::to_string(&expected - all_expected().data());
-        };
-        for (std::size_t k = 0; k < 3; ++k)
-          ASSERT_NEAR(pixel(got.color, x, y)[k], want.color[k], 1e-4 * want.color[k] + 1e-6) << where();
-        ASSERT_NEAR(got.variance.floats().at(x, y), want.variance, 2e-4 * want.variance + 1e-8) << where();
-      }
+  static const std::vector<Expected> kAll = [] {
+    std::vector<Expected> all;
+    for (const Case& c : all_cases()) all.push_back(expected_of(c, make_scene(c)));
+    return all;
+  }();
+  for (const Expected& expected : kAll) expect_matches(expected, "case " + std::to_string(&expected - kAll.data()));
+}
+
+// Along the lines of equal depth the slopes of x and y cancel, and what they leave must be exact: it is compared with eps_z.
+TEST_P(AtrousOnTarget, MatchesTheFormulasAlongADiagonalSlope) {
+  for (const int level : {0, 4, 6}) {
+    const Case c{.level = level, .size = {150, 150}, .without = {"depth_gradient", "blurred_variance", "variance"}};
+    Scene scene = make_scene(c);
+    scene.insert_or_assign("depth", test_image(QUELL_TYPE_DEPTH, c.size, [](int x, int y, int) {
+                             return static_cast<float>(10 + 0.013 * x - 0.026 * y + 1e-6 * noise(x, y, 3));
+                           }));
+    expect_matches(expected_of(c, scene), "level " + std::to_string(level));
+  }
+}
+
+// On a bent surface a firefly may be all that counts for pixels around it, however small its weight is, and however few of that
+// weight's digits are right. As bright as the pass promises.
+TEST_P(AtrousOnTarget, MatchesTheFormulasAroundFireflies) {
+  for (const auto& [power, bright] : {std::pair{64.0, 10.0}, {128.0, 1000.0}}) {
+    const Case c{.level = 1, .size = {80, 60}, .without = {"depth_gradient", "depth"}, .params = {{"sigma_n", power}}};
+    Scene scene = make_scene(c);
+    const auto color = [factor = bright](int x, int y, int k) {
+      return static_cast<float>((noise(x, y, k) + 1) * (noise(x, y, 9) < 0.05 ? factor : 1));
+    };
+    const auto normal = [](int x, int y, int k) {
+      const double a = 0.6 * noise(x, y, 5), b = 7 * noise(x, y, 6);
+      return static_cast<float>(Vec{std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)}[std::size_t(k)]);
+    };
+    scene.insert_or_assign("color", test_image(QUELL_TYPE_COLOR, c.size, color));
+    scene.insert_or_assign("normal", test_image(QUELL_TYPE_NORMAL, c.size, normal));
+    for (const float variance : {0.0F, 1e6F, 1e29F}) {
+      scene.insert_or_assign("blurred_variance",
+                             test_image(QUELL_TYPE_VARIANCE, c.size, [=](int, int, int) { return variance; }));
+      expect_matches(expected_of(c, scene), "power " + std::to_string(power) + ", variance " + std::to_string(variance));
+    }
   }
 }
 
@@ -262,6 +296,58 @@ TEST(Atrous, MixesAlongASlopeHoweverSteepItIs) {
   const double side = (1.0 / 4 + 1.0 / 16) * std::exp(-1), total = 3.0 / 8 + 2 * side;
   EXPECT_NEAR(got.color.floats().at(19, 10), (1 * (total - side) + 5 * side) / total, 1e-4);
   EXPECT_NEAR(got.color.floats().at(20, 10), (5 * (total - side) + 1 * side) / total, 1e-4);
+}
+
+// Falcor's pass, from its shader: weights relative to the middle, which weighs 1, and tolerances that are not sums.
+TEST(Atrous, IsFalcorsFilterWhenItsTolerancesAreSet) {
+  const Case c{.level = 2,
+               .size = {70, 50},
+               .without = {"position"},
+               .params = {{"sigma_l", 10}, {"eps_l", 0}, {"eps_variance", 1e-10}, {"eps_z", 0}}};
+  Scene scene = make_scene(c);
+  const auto at = [&](const char* name, int x, int y) { return double{scene.at(name).floats().at(x, y)}; };
+  const auto vec = [&](const char* name, int x, int y) { return pixel(scene.at(name), x, y); };
+  const auto inside = [&](int x, int y) { return x >= 0 && y >= 0 && x < c.size.width && y < c.size.height; };
+  for (int i = 0; i < 70; i += 3)
+    scene.at("depth_gradient").writable_floats().at(i, i % 50) = 1e-8F;  // max(gradient, 1e-8) there
+  const Result got = run(c, scene);
+  const double kernel[] = {1, 2.0 / 3, 1.0 / 6};
+  for (int y = 0; y < c.size.height; ++y)
+    for (int x = 0; x < c.size.width; ++x) {
+      if (at("depth", x, y) >= 1e10 || dot(vec("normal", x, y), vec("normal", x, y)) == 0) continue;
+      const auto luminance = [&](int px, int py) { return dot(vec("color", px, py), {0.2126, 0.7152, 0.0722}); };
+      const double phi_color = 10 * std::sqrt(std::max(0.0, 1e-10 + at("blurred_variance", x, y)));
+      double weights = 1, variance = at("variance", x, y), red = at("color", x, y);
+      for (int dy = -2; dy <= 2; ++dy)
+        for (int dx = -2; dx <= 2; ++dx) {
+          const int qx = x + 4 * dx, qy = y + 4 * dy;
+          if ((dx == 0 && dy == 0) || !inside(qx, qy)) continue;
+          const double phi_depth = std::max(at("depth_gradient", x, y), 1e-8) * 4 * std::hypot(dx, dy);
+          const double w = std::exp(-std::abs(luminance(x, y) - luminance(qx, qy)) / phi_color -
+                                    std::abs(at("depth", x, y) - at("depth", qx, qy)) / phi_depth) *
+                           std::pow(std::max(0.0, dot(vec("normal", x, y), vec("normal", qx, qy))), 128.0) *
+                           kernel[std::abs(dx)] * kernel[std::abs(dy)];
+          weights += w, variance += w * w * at("variance", qx, qy), red += w * at("color", qx, qy);
+        }
+      ASSERT_NEAR(got.color.floats().at(x, y), red / weights, 1e-4 * red / weights + 1e-6) << x << "," << y;
+      variance /= weights * weights;
+      ASSERT_NEAR(got.variance.floats().at(x, y), variance, 2e-4 * variance + 1e-8) << x << "," << y;
+    }
+}
+
+TEST(Atrous, TakesAGradientOfAnySizeForASlopeThatExplainsAll) {
+  const Case c{.level = 3, .without = {"blurred_variance"}};
+  Scene steep = make_scene(c), flat = steep;
+  steep.insert_or_assign("depth_gradient", test_image(QUELL_TYPE_SCALAR, c.size, [](int x, int, int) {
+                           return x % 2 == 0 ? std::numeric_limits<float>::max() : 1e12F;
+                         }));
+  for (int y = 0; y < c.size.height; ++y)
+    for (int x = 0; x < c.size.width; ++x)
+      if (float& depth = flat.at("depth").writable_floats().at(x, y); depth < QUELL_NO_SURFACE_DEPTH) depth = 5;
+  const Result got = run(c, steep), want = run(c, flat);
+  for (int y = 0; y < c.size.height; ++y)
+    for (int x = 0; x < c.size.width; ++x)
+      ASSERT_NEAR(got.color.floats().at(x, y), want.color.floats().at(x, y), 1e-5) << x << "," << y;
 }
 
 // A background next to a surface is neither a slope nor a neighbor.
