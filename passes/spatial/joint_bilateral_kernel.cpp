@@ -2,10 +2,10 @@
 // count (outside the image, no surface, not finite) have a color so far from all others that their weight is exactly 0. The loop
 // over the taps is then the formula alone, without an edge or a mask in it.
 //
-// Error of a weight exp(-E), relative: 3.8e-6 (2^x) + 4.0e-6 E (angle) + 9e-7 E (roundings, reciprocal) + 2e-7 / sigma_plane
+// Error of a weight exp(-E), relative: 3.8e-6 (2^x) + 4.3e-6 E (angle) + 9e-7 E (roundings, reciprocal) + 2e-7 / sigma_plane
 // sqrt(2 E) (the height over the plane is a difference). The center weighs 1, so that taps of large E are outweighed: where
-// sigma_plane is 0.1, a window of 33 x 33 taps of equal E is worst at E = 5.3, with 3.1e-5, one of 129 x 129 at E = 7.6, with
-// 4.4e-5. A result errs by at most twice that; roundings mostly cancel, and renderings see 2e-6. Limits: colors below 1e18,
+// sigma_plane is 0.1, a window of 33 x 33 taps of equal E is worst at E = 5.3, with 3.2e-5, one of 129 x 129 at E = 7.6, with
+// 4.6e-5. A result errs by at most twice that; roundings mostly cancel, and renderings see 2e-6. Limits: colors below 1e18,
 // positions below 1e9; points closer than 1e-15 coincide.
 #include "passes/spatial/joint_bilateral_kernel.h"
 

@@ -49,9 +49,9 @@ constexpr Mix kAtrousTap =
     kDotAdd3 + Mix{.fma = 3, .load = 3} +                                            // normal: cosine and logarithm
     Mix{.fma = 4, .add = 3, .mul = 2, .min_max = 1, .shift = 1} +                    // exp2_negative() without a gain; the spline
     Mix{.fma = 3, .add = 1, .load = 3} + Mix{.fma = 1, .mul = 1, .load = 1};         // sums; that of the variance
-constexpr Mix kAtrousPair{.fma = 3, .add = 1, .mul = 1, .estimate = 1, .logic = 1};  // two taps share the gain of depths
-constexpr Mix kAtrousSlope{.add = 2, .mul = 1, .logic = 13, .load = 3};
-constexpr Mix kAtrousGain{.fma = 3, .add = 2, .mul = 2, .min_max = 2, .divide = 1, .root = 1, .load = 6};  // with the blur
+constexpr Mix kAtrousPair{.fma = 4, .mul = 1, .estimate = 1, .logic = 1};  // two taps share the gain of depths
+constexpr Mix kAtrousSlope{.add = 2, .logic = 13, .load = 3};
+constexpr Mix kAtrousGain{.fma = 3, .add = 3, .mul = 2, .min_max = 3, .divide = 1, .root = 1, .load = 6};  // with the blur
 constexpr Mix kAtrousMix = kAtrousTap * 24 + kAtrousPair * 12 + kAtrousSlope * 2 + kAtrousGain +
                            Mix{.add = 3, .mul = 1, .min_max = 1, .logic = 1, .load = 8} +  // pixel()
                            Mix{.add = 5, .mul = 9, .divide = 1, .logic = 5, .load = 8};    // the tap in the middle, the quotients
