@@ -156,7 +156,7 @@ class Atrous final : public Pass {
   }
 
  private:
-  static constexpr int kTurnsPerChunk = 16;  // of which each reads 4 rows more than it makes
+  static constexpr int kTurnsPerChunk = 32;  // of which each reads 4 rows more than it makes
   atrous::Settings settings_;
 };
 
