@@ -34,18 +34,10 @@ void write_map(const Image& map, const fs::path& to) {
 /// Where `at` of a panel's pixels begins in the image.
 int scaled(int at, int image, int panel) { return static_cast<int>(std::int64_t{at} * image / panel); }
 
-Size panel_size(Size image) {
-  double scale = 1;
-  if (image.width > kLargest) scale = static_cast<double>(kLargest) / image.width;
-  if (image.width < kSmallest) scale = std::ceil(static_cast<double>(kSmallest) / image.width);
-  return {std::max(1, static_cast<int>(image.width * scale)),
-          std::clamp(static_cast<int>(image.height * scale), 1, 4 * kLargest)};
-}
-
 /// A pixel of the panel is the mean of those that it covers, by `value(x, y, channel)`.
 template <class Value, class Paint>
 Raster paint(Size image, int channels, const Value& value, const Paint& color) {
-  const Size size = panel_size(image);
+  const Size size = panel_size(image, kSmallest, kLargest);
   Raster raster(size.width, size.height);
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x) {

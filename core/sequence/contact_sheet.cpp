@@ -127,6 +127,13 @@ void draw_panel(Sheet& sheet, const Panel& panel, int x, int y) {
 
 }  // namespace
 
+Size panel_size(Size image, int smallest, int largest) {
+  double scale = 1;
+  if (image.width > largest) scale = static_cast<double>(largest) / image.width;
+  if (image.width < smallest) scale = std::ceil(static_cast<double>(smallest) / image.width);
+  return {std::max(1, static_cast<int>(image.width * scale)), std::clamp(static_cast<int>(image.height * scale), 1, 4 * largest)};
+}
+
 void write_raster(const std::filesystem::path& file, const Raster& raster) {
   prepare_oiio();
   static_assert(sizeof(Rgb) == 3, "pixels follow each other without gaps");

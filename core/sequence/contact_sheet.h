@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "quell/sdk/frame.h"
+
 namespace quell {
 
 using Rgb = std::array<std::uint8_t, 3>;  ///< as a display shows it (sRGB)
@@ -36,6 +38,10 @@ struct Panel {
 
 /// Writes a raster as a PNG of the same bytes. The file appears under its name only when it is complete. Throws Error(frame).
 void write_raster(const std::filesystem::path& file, const Raster& raster);
+
+/// The size of a panel for an image: scaled down to at most `largest` pixels in width, or up by a whole factor to at least
+/// `smallest`, and never higher than four times `largest`.
+Size panel_size(Size image, int smallest, int largest);
 
 /// Writes the panels, in rows of `columns`, under a heading. False when no font was found, so that nothing is labeled. The file
 /// appears under its name only when it is complete. Throws Error(frame) when it cannot be written.

@@ -23,14 +23,6 @@ struct Scaling {
   int row(int y) const { return static_cast<int>(std::int64_t{y} * image.height / panel.height); }
 };
 
-Size panel_size(Size image) {
-  double scale = 1;
-  if (image.width > kLargest) scale = static_cast<double>(kLargest) / image.width;
-  if (image.width < kSmallest) scale = std::ceil(static_cast<double>(kSmallest) / image.width);
-  return {std::max(1, static_cast<int>(image.width * scale)),
-          std::clamp(static_cast<int>(image.height * scale), 1, 4 * kLargest)};
-}
-
 Raster paint(const Scaling& scaling, const Paint& color) {
   Raster raster(scaling.panel.width, scaling.panel.height);
   for (int y = 0; y < raster.height; ++y)
@@ -204,7 +196,7 @@ std::vector<Panel> make_panels(const FrameData& frame, const std::vector<Finding
   Size panel{};
   for (const CheckedImage* input : list_images(frame)) {
     if (!input->image) continue;
-    if (panel.width == 0) panel = panel_size(input->image.size());
+    if (panel.width == 0) panel = panel_size(input->image.size(), kSmallest, kLargest);
     panels.push_back(make_input_panel(*input, frame, panel));
   }
   for (const Finding& finding : findings)
