@@ -2,7 +2,8 @@
 // Source:  GAMES202, homework 5: alpha C + (1 - alpha) clamp(history, mu - k sigma, mu + k sigma); the clamp to mean and
 //          deviation of a window is the variance clipping of Salvi, "An Excursion in Temporal Supersampling", GDC 2016.
 // Departs: the homework takes the deviation about the center pixel and divides by the full window also at the border; both are
-//          choices here, and by default the deviation is about the mean and the divisor the number of pixels that exist.
+//          choices here, and by default the deviation is about the mean and the divisor the number of pixels that exist. With a
+//          length the average begins as a plain mean, as in Falcor's SVGFPass.
 // Cost:    2 (2r + 1) multiply-adds for each of the two separable sums, a channel; no branch a tap.
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,7 @@ enum class Spread { mean, center };
 enum class Count { existing, full };
 
 struct Params {
-  double alpha = 0.2;
+  double alpha = 0.2, max_length = 32;
   Clamp clamp = Clamp::neighborhood;
   int clamp_radius = 3;
   double clamp_k = 1.0;
@@ -27,6 +28,8 @@ struct Params {
   Count count = Count::existing;
   void describe(auto&& field) {
     field("alpha", alpha, Range<double>{0, 1}, "", "Share of the new frame; 1 ignores the history.");
+    field("max_length", max_length, Range<double>{1, 1e6}, "frames",
+          "The history's length is counted up to this. With alpha 0 the average is the running mean of that many frames.");
     field("clamp", clamp,
           Choices{{"neighborhood", "to mean +- clamp_k deviations of the window"}, {"none", "the history as it is"}},
           "What the history is limited to.");
@@ -51,20 +54,25 @@ const PassInfo kInfo{
         "color = alpha color + (1 - alpha) clamp(history), for each channel by itself. Where the history is absent or not "
         "valid, the new color stands alone. After n frames of a scene at rest a first frame's share is (1 - alpha)^(n - 1), "
         "and the variance of the noise tends to alpha / (2 - alpha) of that of one frame.\n\n"
+        "With a length, alpha is max(alpha, 1 / n) with n = min(max_length, length + 1): young histories are plain means. With a "
+        "confidence c in the history, alpha becomes 1 - c (1 - alpha), and the new length 1 + c (n - 1) instead of n. A history "
+        "without a length counts as one of max_length frames; where there is none, the new length is 1.\n\n"
         "The window's sums are taken in double: squares of floats are exact there, and the error of a 7x7 window's deviation "
         "is below 1e-7 of the largest value in it.",
     .source =
         "GAMES202, homework 5 (accumulation, equations for mu, sigma and the clamp). Salvi, \"An Excursion in Temporal "
-        "Supersampling\", GDC 2016.",
+        "Supersampling\", GDC 2016. Alpha by length: Falcor's SVGFPass.",
     .inputs = {{"color", kColor, "the new frame"},
                {"history", kColor, "the average so far, at this frame's pixels", true},
-               {"valid", kMask, "where the history can be used; without it, everywhere", true}},
-    .outputs = {{"color", kColor, "the new average"}},
+               {"valid", kMask, "where the history can be used; without it, everywhere", true},
+               {"length", kScalar, "how many frames the history reaches back, at this frame's pixels", true},
+               {"confidence", kScalar, "0 to 1: how far the history is to be trusted", true}},
+    .outputs = {{"color", kColor, "the new average"}, {"length", kScalar, "frames that it reaches back"}},
 };
 
 struct Job {
-  FloatImage color, history, valid;
-  FloatOutput out;
+  FloatImage color, history, valid, length, confidence;
+  FloatOutput out, new_length;
 };
 
 // Sums over the window's column, for each pixel of a row; `radius` zeros stand on both sides, so that a sum along the row needs
@@ -97,26 +105,25 @@ class TemporalBlendPass final : public Pass {
   explicit TemporalBlendPass(const Params& params) : params_(params) {}
 
   void infer(Inference& inference) const override {
+    const auto width = static_cast<std::size_t>(inference.size("color").width);
     if (!inference.present("history")) return inference.set_in_place("color", "color");
     inference.set_in_place("color", "history");
+    inference.set_slot_scratch(width * sizeof(double));
     if (params_.clamp == Clamp::none) return;
     inference.set_radius("color", params_.clamp_radius);
-    inference.set_slot_scratch(4 * padded(inference.size("color").width) * sizeof(double));
+    inference.set_slot_scratch((width + 4 * padded(inference.size("color").width)) * sizeof(double));
   }
 
   void run(const Frame& frame) const override {
-    const Job job{frame.image("color"), frame.image("history"), frame.image("valid"), frame.output("color")};
+    const Job job{frame.image("color"),      frame.image("history"), frame.image("valid"),  frame.image("length"),
+                  frame.image("confidence"), frame.output("color"),  frame.output("length")};
     frame.parallel_rows(job.out.height, [&](int y0, int y1, std::uint32_t slot) {
-      double* scratch = static_cast<double*>(frame.slot_scratch(slot));
-      for (int y = y0; y < y1; ++y)
-        for (int c = 0; c < job.out.channels; ++c) {
-          if (!job.history)
-            std::copy_n(job.color.row(y, c), job.out.width, job.out.row(y, c));
-          else if (params_.clamp == Clamp::none)
-            blend_row(job, y, c, [](int, double history) { return history; });
-          else
-            blend_clamped_row(job, y, c, scratch);
-        }
+      for (int y = y0; y < y1; ++y) {
+        if (job.history)
+          blend_rows(job, y, static_cast<double*>(frame.slot_scratch(slot)));
+        else
+          take_rows(job, y);
+      }
     });
   }
 
@@ -125,30 +132,63 @@ class TemporalBlendPass final : public Pass {
     return static_cast<std::size_t>(width) + 2 * static_cast<std::size_t>(params_.clamp_radius);
   }
 
+  static void take_rows(const Job& job, int y) {
+    for (int c = 0; c < job.out.channels; ++c)
+      if (job.out.row(y, c) != job.color.row(y, c)) std::copy_n(job.color.row(y, c), job.out.width, job.out.row(y, c));
+    std::fill_n(job.new_length.row(y), job.out.width, 1.0F);
+  }
+
+  void blend_rows(const Job& job, int y, double* scratch) const {
+    double* alphas = scratch;
+    find_alphas(job, y, alphas);
+    for (int c = 0; c < job.out.channels; ++c) {
+      if (params_.clamp == Clamp::none)
+        blend_row(job, y, c, alphas, [](int, double history) { return history; });
+      else
+        blend_clamped_row(job, y, c, alphas, scratch + job.out.width);
+    }
+  }
+
+  // The new frame's share in each pixel of the row, and the new length.
+  void find_alphas(const Job& job, int y, double* __restrict alphas) const {
+    const int width = job.out.width;
+    const float *length = job.length ? job.length.row(y) : nullptr, *valid = job.valid ? job.valid.row(y) : nullptr,
+                *confidence = job.confidence ? job.confidence.row(y) : nullptr;
+    float* __restrict new_length = job.new_length.row(y);
+    const double alpha = params_.alpha, max_length = params_.max_length;
+    for (int x = 0; x < width; ++x) {
+      const double n = length ? std::min(max_length, length[x] + 1.0) : max_length;
+      const double a = length ? std::max(alpha, 1 / n) : alpha;
+      const double trust = confidence ? std::min(std::max(double{confidence[x]}, 0.0), 1.0) : 1.0;
+      alphas[x] = confidence ? 1 - trust * (1 - a) : a;
+      const float lasting = static_cast<float>(1 + trust * (n - 1));
+      new_length[x] = !valid || valid[x] > 0.5F ? lasting : 1.0F;
+    }
+  }
+
   // The output may lie on the history, pixel for pixel: __restrict would deny that, ivdep promises only that no pixel depends on
   // another.
   template <class Limit>
-  void blend_row(const Job& job, int y, int c, const Limit& limit) const {
+  void blend_row(const Job& job, int y, int c, const double* alphas, const Limit& limit) const {
     const float *color = job.color.row(y, c), *history = job.history.row(y, c);
     const float* valid = job.valid ? job.valid.row(y) : nullptr;
     float* out = job.out.row(y, c);
-    const double alpha = params_.alpha;
 #pragma GCC ivdep
     for (int x = 0; x < job.out.width; ++x) {
-      const float mixed = static_cast<float>(alpha * color[x] + (1 - alpha) * limit(x, history[x]));
+      const float mixed = static_cast<float>(alphas[x] * color[x] + (1 - alphas[x]) * limit(x, history[x]));
       // Chosen, not multiplied by 0: what is not valid need not be finite.
       out[x] = !valid || valid[x] > 0.5F ? mixed : color[x];
     }
   }
 
-  void blend_clamped_row(const Job& job, int y, int c, double* scratch) const {
+  void blend_clamped_row(const Job& job, int y, int c, const double* alphas, double* scratch) const {
     const int width = job.out.width, radius = params_.clamp_radius;
     const std::size_t stride = padded(width);
     const ColumnSums sums{scratch, scratch + stride};
     double *lower = scratch + 2 * stride, *upper = scratch + 3 * stride;
     sum_columns(job.color, c, y, radius, sums);
     find_limits(job, y, c, sums, lower, upper);
-    blend_row(job, y, c, [=](int x, double history) { return std::min(std::max(history, lower[x]), upper[x]); });
+    blend_row(job, y, c, alphas, [=](int x, double history) { return std::min(std::max(history, lower[x]), upper[x]); });
   }
 
   void find_limits(const Job& job, int y, int c, const ColumnSums& sums, double* __restrict lower,

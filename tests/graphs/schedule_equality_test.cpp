@@ -40,7 +40,7 @@ class KeepingSink final : public FrameSink {
 Items run(const std::shared_ptr<const Graph>& graph, SessionOptions options) {
   const auto box = Sequence::open(kBox);
   for (const GraphInput& input : graph->inputs) box->expect(input.name, input.type);
-  options.dumps = {"motion.motion", "reproject.color", "reproject.valid"};
+  options.dumps = {"motion.motion", "reproject.history[0]", "reproject.valid"};
   KeepingSink sink;
   Session session(graph, options);
   for (const FrameReport& report : session.run(kFrames, *box, sink)) EXPECT_TRUE(report.ok) << report.error;

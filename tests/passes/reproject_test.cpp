@@ -34,13 +34,13 @@ PassTest make(const char* fetch, const Image& history, const Image& vectors) {
 }
 
 class EveryFetch : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Reproject, EveryFetch, testing::Values("bilinear", "nearest", "truncate"),
+INSTANTIATE_TEST_SUITE_P(Reproject, EveryFetch, testing::Values("bilinear", "nearest", "truncate", "catmull_rom"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST_P(EveryFetch, ReturnsTheHistoryUntouchedAtRest) {
   PassTest pass = make(GetParam(), color(), motion(0, 0));
   pass.run();
-  const FloatImage out = pass.output("color"), valid = pass.output("valid");
+  const FloatImage out = pass.output("history"), valid = pass.output("valid");
   for (int y = 0; y < kSize.height; ++y)
     for (int x = 0; x < kSize.width; ++x) {
       ASSERT_EQ(valid.at(x, y), 1.0F);
@@ -51,7 +51,7 @@ TEST_P(EveryFetch, ReturnsTheHistoryUntouchedAtRest) {
 TEST_P(EveryFetch, MovesByWholePixelsAndIsInvalidOffTheScreen) {
   PassTest pass = make(GetParam(), color(), motion(3, -2));
   pass.run();
-  const FloatImage out = pass.output("color"), valid = pass.output("valid");
+  const FloatImage out = pass.output("history"), valid = pass.output("valid");
   for (int y = 0; y < kSize.height; ++y)
     for (int x = 0; x < kSize.width; ++x) {
       // Truncation takes points less than a pixel off the upper border as on it; here they are 0.5 off, in row 1.
@@ -63,18 +63,18 @@ TEST_P(EveryFetch, MovesByWholePixelsAndIsInvalidOffTheScreen) {
     }
 }
 
-TEST_P(EveryFetch, HasNothingInTheFirstFrame) {
+TEST_P(EveryFetch, HasNothingWithoutAHistory) {
   PassTest pass("reproject");
   pass.set("fetch", GetParam());
   pass.input("motion", motion(0, 0));
   pass.run();
-  const FloatImage out = pass.output("color"), valid = pass.output("valid");
-  ASSERT_EQ(out.width, kSize.width);
-  ASSERT_EQ(out.height, kSize.height);
+  const FloatImage valid = pass.output("valid"), rejected = pass.output("rejected");
+  ASSERT_EQ(valid.width, kSize.width);
+  ASSERT_EQ(valid.height, kSize.height);
   for (int y = 0; y < kSize.height; ++y)
     for (int x = 0; x < kSize.width; ++x) {
       ASSERT_EQ(valid.at(x, y), 0.0F);
-      for (int c = 0; c < out.channels; ++c) ASSERT_EQ(out.at(x, y, c), 0.0F);
+      ASSERT_EQ(rejected.at(x, y), 1.0F);
     }
 }
 
@@ -83,12 +83,12 @@ TEST_P(EveryFetch, HasNothingWhereThereIsNoSurface) {
   pass.input_ids("id", kSize, [](int, int) { return QUELL_NO_ID; });
   pass.run();
   EXPECT_EQ(pass.output("valid").at(5, 5), 0.0F);
-  EXPECT_EQ(pass.output("color").at(5, 5), 0.0F);
+  EXPECT_EQ(pass.output("history").at(5, 5), 0.0F);
   // A background that was background before is no history either.
   pass.input_ids("previous_id", kSize, [](int, int) { return QUELL_NO_ID; });
   pass.run();
   EXPECT_EQ(pass.output("valid").at(5, 5), 0.0F);
-  EXPECT_EQ(pass.output("color").at(5, 5), 0.0F);
+  EXPECT_EQ(pass.output("history").at(5, 5), 0.0F);
 }
 
 TEST_P(EveryFetch, IsInvalidWhereTheMotionLeadsNowhere) {
@@ -100,9 +100,9 @@ TEST_P(EveryFetch, IsInvalidWhereTheMotionLeadsNowhere) {
   pass.run();
   for (int x = 0; x < 20; ++x) {
     EXPECT_EQ(pass.output("valid").at(x, 1), 0.0F) << x;
-    EXPECT_EQ(pass.output("color").at(x, 1), 0.0F) << x;
+    EXPECT_EQ(pass.output("history").at(x, 1), 0.0F) << x;
     EXPECT_EQ(pass.output("valid").at(x, 0), 1.0F) << x;
-    EXPECT_EQ(pass.output("color").at(x, 2), value(x, 2, 0)) << x;
+    EXPECT_EQ(pass.output("history").at(x, 2), value(x, 2, 0)) << x;
   }
 }
 
@@ -117,7 +117,7 @@ TEST_P(EveryFetch, SeesTheSameObjectOnly) {
     const bool on_border = x == 3 && std::string(GetParam()) == "truncate";
     const bool same = (x >= 4 && x < 16) || x >= 20 || on_border;
     EXPECT_EQ(pass.output("valid").at(x, 8), same ? 1.0F : 0.0F) << x;
-    EXPECT_EQ(pass.output("color").at(x, 8), same ? value(std::max(x - 4, 0), 8, 0) : 0.0F) << x;
+    EXPECT_EQ(pass.output("history").at(x, 8), same ? value(std::max(x - 4, 0), 8, 0) : 0.0F) << x;
   }
 }
 
@@ -126,7 +126,7 @@ TEST(Reproject, IsBilinearByDefaultAndAveragesTwoPixelsAtHalfAPixel) {
   pass.input("history", color());
   pass.input("motion", motion(0.5F, 0));
   pass.run();
-  const FloatImage out = pass.output("color");
+  const FloatImage out = pass.output("history");
   EXPECT_EQ(out.at(7, 3), value(7, 3, 0) + 0.5F);
   EXPECT_EQ(out.at(kSize.width - 1, 3), value(kSize.width - 1, 3, 0));  // the tap outside is left out
   EXPECT_EQ(pass.output("valid").at(kSize.width - 1, 3), 1.0F);
@@ -139,7 +139,7 @@ TEST(Reproject, LeavesTapsOfOtherObjectsOutAndRenormalizes) {
   pass.run();
   // Weights 9/16, 3/16, 3/16 and, left out, 1/16 of (8, 8).
   const double want = (9 * value(7, 7, 0) + 3 * value(8, 7, 0) + 3 * value(7, 8, 0)) / 15.0;
-  EXPECT_EQ(pass.output("color").at(7, 7), static_cast<float>(want));
+  EXPECT_EQ(pass.output("history").at(7, 7), static_cast<float>(want));
   EXPECT_EQ(pass.output("valid").at(7, 7), 1.0F);
 }
 
@@ -166,8 +166,8 @@ TEST(Reproject, DiffersBetweenNearestAndTruncationAtTheLeftAndUpperBorderAlone) 
         ASSERT_EQ(truncate.output("valid").at(x, y), taken ? 1.0F : 0.0F) << px << "," << py;
         ASSERT_EQ(nearest.output("valid").at(x, y), taken && !off ? 1.0F : 0.0F) << px << "," << py;
         const float fetched = taken ? value(static_cast<int>(px), static_cast<int>(py), 0) : 0.0F;
-        ASSERT_EQ(truncate.output("color").at(x, y), fetched) << px << "," << py;
-        ASSERT_EQ(nearest.output("color").at(x, y), off ? 0.0F : fetched) << px << "," << py;
+        ASSERT_EQ(truncate.output("history").at(x, y), fetched) << px << "," << py;
+        ASSERT_EQ(nearest.output("history").at(x, y), off ? 0.0F : fetched) << px << "," << py;
       }
   }
 }
@@ -180,7 +180,7 @@ TEST(Reproject, KeepsAConstantImageBitForBit) {
   pass.run();
   for (int y = 0; y < kSize.height; ++y)
     for (int x = 0; x < kSize.width; ++x)
-      ASSERT_EQ(pass.output("color").at(x, y), pass.output("valid").at(x, y) > 0 ? 0.1F : 0.0F) << x << "," << y;
+      ASSERT_EQ(pass.output("history").at(x, y), pass.output("valid").at(x, y) > 0 ? 0.1F : 0.0F) << x << "," << y;
 }
 
 TEST(Reproject, DoesNotSpreadWhatIsNoNumberToPixelsThatDoNotFetchIt) {
@@ -189,14 +189,14 @@ TEST(Reproject, DoesNotSpreadWhatIsNoNumberToPixelsThatDoNotFetchIt) {
   history.writable_floats().at(20, 8) = kInfinity;
   PassTest pass = make("bilinear", history, motion(1, 0));  // a weight of 0 falls on the neighbors
   pass.run();
-  for (int x = 0; x < kSize.width - 1; ++x) EXPECT_EQ(std::isfinite(pass.output("color").at(x, 8)), x != 9 && x != 19) << x;
+  for (int x = 0; x < kSize.width - 1; ++x) EXPECT_EQ(std::isfinite(pass.output("history").at(x, 8)), x != 9 && x != 19) << x;
 }
 
 TEST(Reproject, FetchesImagesOfAnyFloatType) {
   for (const quell_type type : {QUELL_TYPE_SCALAR, QUELL_TYPE_MOMENTS, QUELL_TYPE_NORMAL, QUELL_TYPE_DEPTH}) {
     PassTest pass = make("bilinear", test_image(type, kSize, value), motion(-1, 0));
     pass.run();
-    const FloatImage out = pass.output("color");
+    const FloatImage out = pass.output("history");
     ASSERT_EQ(out.channels, type == QUELL_TYPE_MOMENTS ? 2 : type == QUELL_TYPE_NORMAL ? 3 : 1);
     EXPECT_EQ(out.at(5, 5, out.channels - 1), value(4, 5, out.channels - 1));
   }
@@ -212,10 +212,11 @@ TEST(Reproject, AgreesWithTentWeightsOverTheWholeHistory) {
     const Image history = color(size);
     const Image id = test_ids(size, draw_id), previous_id = test_ids(size, draw_id);
     PassTest pass = make("bilinear", history, vectors);
+    pass.set("min_weight", 0.0);
     pass.input("id", id);
     pass.input("previous_id", previous_id);
     pass.run();
-    const FloatImage out = pass.output("color"), valid = pass.output("valid"), v = vectors.floats();
+    const FloatImage out = pass.output("history"), valid = pass.output("valid"), v = vectors.floats();
     for (int y = 0; y < size.height; ++y)
       for (int x = 0; x < size.width; ++x) {
         double weights = 0, sum = 0;

@@ -52,6 +52,74 @@ TEST(TemporalBlend, MixesByAlpha) {
   EXPECT_EQ(pass.output("color").at(32, 16, 2), 4.0F);
 }
 
+// 64 frames at rest, each pixel another noise: the running mean is their mean, within the roundings of 64 sums.
+TEST(TemporalBlend, AveragesFramesAtRestExactlyWithARunningMean) {
+  const auto noise = [](int x, int y, int c, int frame) {
+    return static_cast<float>((x * 7 + y * 13 + c * 5 + frame * 29) % 37) / 9;
+  };
+  PassTest pass("temporal_blend");
+  pass.set("alpha", 0.0).set("max_length", 64.0).set("clamp", "none");
+  pass.feed_back("color", "history").feed_back("length", "length");
+  for (int frame = 0; frame < 64; ++frame) {
+    pass.input("color", test_image(QUELL_TYPE_COLOR, kSize, [&](int x, int y, int c) { return noise(x, y, c, frame); }));
+    pass.run();
+    ASSERT_EQ(pass.output("length").at(3, 3), static_cast<float>(frame + 1));
+  }
+  for (int c = 0; c < 3; ++c)
+    for (int y = 0; y < kSize.height; ++y)
+      for (int x = 0; x < kSize.width; ++x) {
+        double mean = 0;
+        for (int frame = 0; frame < 64; ++frame) mean += noise(x, y, c, frame) / 64.0;
+        ASSERT_NEAR(pass.output("color").at(x, y, c), mean, 1e-5) << x << "," << y;
+      }
+}
+
+TEST(TemporalBlend, CountsFramesUpToTheLargestLength) {
+  PassTest pass("temporal_blend");
+  pass.set("alpha", 0.0).set("max_length", 4.0).set("clamp", "none");
+  pass.input("color", constant(1)).input("history", constant(5));
+  pass.input("length", test_image(QUELL_TYPE_SCALAR, kSize, [](int x, int, int) { return static_cast<float>(x); }));
+  pass.run();
+  for (int x = 0; x < kSize.width; ++x) {
+    const double n = std::min(4, x + 1);
+    EXPECT_EQ(pass.output("length").at(x, 2), n);
+    EXPECT_NEAR(pass.output("color").at(x, 2), 1 / n + (1 - 1 / n) * 5, 1e-6) << x;
+  }
+}
+
+TEST(TemporalBlend, TakesAlphaWhereAHistoryIsLongerThanItsInverse) {
+  PassTest pass("temporal_blend");
+  pass.set("alpha", 0.25).set("clamp", "none").input("color", constant(1)).input("history", constant(5));
+  pass.input("length", test_image(QUELL_TYPE_SCALAR, kSize, [](int x, int, int) { return static_cast<float>(x); }));
+  pass.run();
+  EXPECT_EQ(pass.output("color").at(1, 2), 3.0F);   // 1 / 2
+  EXPECT_EQ(pass.output("color").at(30, 2), 4.0F);  // 1 / 4
+}
+
+TEST(TemporalBlend, TrustsTheHistoryAsFarAsTheConfidenceSays) {
+  PassTest pass("temporal_blend");
+  pass.set("alpha", 0.5).set("clamp", "none").input("color", constant(1)).input("history", constant(5));
+  pass.input("length", test_image(QUELL_TYPE_SCALAR, kSize, [](int, int, int) { return 8.0F; }));
+  pass.input("confidence", test_image(QUELL_TYPE_SCALAR, kSize, [](int x, int, int) { return static_cast<float>(x - 1) / 4; }));
+  pass.run();
+  for (int x = 0; x < 8; ++x) {
+    const double trust = std::clamp((x - 1) / 4.0, 0.0, 1.0);
+    EXPECT_NEAR(pass.output("color").at(x, 2), 1 + trust * 0.5 * 4, 1e-6) << x;
+    EXPECT_EQ(pass.output("length").at(x, 2), 1 + trust * 8) << x;
+  }
+}
+
+TEST(TemporalBlend, BeginsToCountWhereTheHistoryIsNotValid) {
+  PassTest pass("temporal_blend");
+  pass.set("clamp", "none").input("color", constant(1)).input("history", constant(5));
+  pass.input("length", test_image(QUELL_TYPE_SCALAR, kSize, [](int x, int, int) { return x % 2 ? kNan : 8.0F; }));
+  pass.input("valid", test_image(QUELL_TYPE_MASK, kSize, [](int x, int, int) { return x % 2 ? 0.0F : 1.0F; }));
+  pass.run();
+  EXPECT_EQ(pass.output("length").at(3, 3), 1.0F);
+  EXPECT_EQ(pass.output("color").at(3, 3), 1.0F);
+  EXPECT_EQ(pass.output("length").at(4, 3), 9.0F);
+}
+
 TEST(TemporalBlend, KeepsAConstantImageBitForBit) {
   for (const char* spread : {"mean", "center"}) {
     PassTest pass("temporal_blend");

@@ -1,0 +1,36 @@
+// Variance where history is short, over rows of pixels, on the vector unit of the machine. variance.cpp makes a pass of it.
+#pragma once
+
+#include <cstddef>
+
+#include "quell/sdk/types.h"
+
+namespace quell::variance {
+
+inline constexpr int kMaxRadius = 8;
+
+/// Images of one size. All but moments and color may be absent; depth counts together with its gradient alone.
+struct Images {
+  FloatImage moments, length, color, depth, depth_gradient, normal;
+};
+
+/// A weight is 2^-e; each factor is finite and at least 0.
+struct Settings {
+  int radius = 3;
+  float min_length = 4;
+  float luminance_factor = 0;  ///< of the difference of luminances
+  float depth_factor = 0;      ///< of the gradient times the distance in pixels, in a denominator
+  float normal_power = 0;      ///< of -ln(n.n')
+  bool wide_normals = false;   ///< a power below 64
+  bool boost = false;
+  bool filter_color = false;
+};
+
+/// Bytes of scratch for images of that width.
+std::size_t scratch_bytes(int width, int radius);
+
+/// Row y of the outputs.
+void variance_row(const Images& in, const Settings& settings, int y, const FloatOutput& variance, const FloatOutput& color,
+                  float* scratch);
+
+}  // namespace quell::variance
