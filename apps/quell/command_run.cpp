@@ -193,6 +193,7 @@ Preparation prepare(const Arguments& arguments, Watch* watch) {
   const bool stays_open = before && same_inputs(*before->graph, *graph);
   Job job = prepare_job(graph, arguments.sequence, arguments.dumps, stays_open ? before->sequence : nullptr);
   if (before && !same_files(*before, job)) watch->rerun.forget();
+  warn_of_idle_cuts(options.cuts, job.frames, job.plan);
   complete_output(output, arguments.output, job);
   auto sink = std::make_unique<FileSink>(output);
   std::vector<ResultFiles> results = list_results(job, *sink, output);

@@ -91,22 +91,24 @@ void RunLog::start(const Job& job, const std::vector<ResultFiles>& results, cons
   for (const InputFiles& input : job.inputs) inputs.text(input.input, input.pattern);
   std::vector<std::string> outputs;
   for (const ResultFiles& series : results) outputs.push_back(series.pattern);
-  state_->lines.write("start", JsonObject()
-                                   .text("version", QUELL_VERSION)
-                                   .text("graph", job.graph->file.string())
-                                   .text("name", job.graph->name)
-                                   .text("graph_hash", graph_hash(*job.graph))
-                                   .text("sequence", job.sequence->describe())
-                                   .object("inputs", inputs)
-                                   .texts("outputs", outputs)
-                                   .text("frames", range(job.frames))
-                                   .number("frame_count", job.frames.size())
-                                   .text("executor", options.schedule == Schedule::serial ? "serial" : "tbb")
-                                   .number("threads", options.threads > 0 ? options.threads : available_threads())
-                                   .text("isa", current_isa())
-                                   .number("frames_in_flight", window.frames)
-                                   .number("memory_limit", window.memory)
-                                   .text("on_error", options.stop_on_error ? "stop" : "continue"));
+  JsonObject start;
+  start.text("version", QUELL_VERSION)
+      .text("graph", job.graph->file.string())
+      .text("name", job.graph->name)
+      .text("graph_hash", graph_hash(*job.graph))
+      .text("sequence", job.sequence->describe())
+      .object("inputs", inputs)
+      .texts("outputs", outputs)
+      .text("frames", range(job.frames))
+      .number("frame_count", job.frames.size())
+      .text("executor", options.schedule == Schedule::serial ? "serial" : "tbb")
+      .number("threads", options.threads > 0 ? options.threads : available_threads())
+      .text("isa", current_isa())
+      .number("frames_in_flight", window.frames)
+      .number("memory_limit", window.memory)
+      .text("on_error", options.stop_on_error ? "stop" : "continue");
+  if (!options.cuts.empty()) start.text("cuts", range(options.cuts));
+  state_->lines.write("start", start);
 }
 
 void RunLog::frame(const FrameReport& report, const Plan& plan, const BufferPool::Usage& usage,

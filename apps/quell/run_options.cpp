@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "arguments.h"
+#include "quell/sequence/frame_range.h"
+#include "quell/text/error.h"
 
 namespace quell::app {
 namespace {
@@ -55,6 +57,7 @@ SessionOptions parse_schedule(const ScheduleArguments& arguments) {
   options.frames_in_flight = parse_frames_in_flight(arguments.frames_in_flight, serial);
   options.memory = parse_memory(arguments.memory);
   options.stop_on_error = parse_choice(arguments.on_error, "--on-error", {"continue", "stop"}) == 1;
+  if (!arguments.cut.empty()) options.cuts = FrameRange::parse(arguments.cut, "--cut").frames();
   return options;
 }
 
@@ -75,6 +78,19 @@ void add_options(CLI::App& app, ScheduleArguments& arguments) {
       ->group(kScheduleGroup);
   add_text(app, "--on-error", arguments.on_error, "WHAT", "When a frame fails: continue, the default, with the others, or stop.")
       ->group(kScheduleGroup);
+  add_text(app, "--cut", arguments.cut, "FRAMES",
+           "Frames with which a new shot begins, such as 101,240: nothing of the frames before them is used from there on.")
+      ->group(kScheduleGroup);
+}
+
+void warn_of_idle_cuts(const std::vector<std::int64_t>& cuts, const std::vector<std::int64_t>& frames, const Plan& plan) {
+  if (cuts.empty()) return;
+  if (plan.histories.empty())
+    return spdlog::warn("--cut has no effect: every frame of the graph '{}' is computed by itself", plan.graph->name);
+  std::vector<std::int64_t> idle = cuts;
+  std::erase_if(idle, [&](std::int64_t cut) { return !frames.empty() && frames.front() < cut && cut <= frames.back(); });
+  if (!idle.empty())
+    spdlog::warn("--cut: nothing is separated at {}; the run has frames {}", FrameRange(idle).text(), FrameRange(frames).text());
 }
 
 }  // namespace quell::app

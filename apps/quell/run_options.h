@@ -18,6 +18,7 @@ struct ScheduleArguments {
   std::string memory = "auto";
   std::string executor = "tbb";
   std::string on_error = "continue";
+  std::string cut = "";
 };
 
 void add_options(CLI::App& app, ScheduleArguments& arguments);
@@ -27,5 +28,8 @@ SessionOptions parse_schedule(const ScheduleArguments& arguments);
 
 /// Bytes: "1000000", "512M", "1.5G" (powers of 1024); 0 for "auto". Throws Error(usage) naming --memory.
 std::size_t parse_memory(const std::string& text);
+
+/// Tells of cuts that separate nothing: none of the frames lies before it, or none from it on, or the plan keeps no frames.
+void warn_of_idle_cuts(const std::vector<std::int64_t>& cuts, const std::vector<std::int64_t>& frames, const Plan& plan);
 
 }  // namespace quell::app

@@ -41,9 +41,11 @@ class Bypass {
         for (WrittenPort& port : reader.in)
           for (WrittenEdge& edge : port.edges) replace(edge, "the input '" + port.name.text + "' of '" + reader.name.text + "'");
     for (WrittenOutput& output : changed.outputs) replace(output.from, "the output '" + output.name.text + "' of the graph");
+    if (changed.reset) replace(*changed.reset, "the reset of the graph");
     if (errors_.size() > before) return {};
     for (std::size_t i = 0; i < changed.nodes.size(); ++i) document.nodes[i].in = std::move(changed.nodes[i].in);
     document.outputs = std::move(changed.outputs);
+    document.reset = std::move(changed.reset);
     return describe();
   }
 

@@ -14,6 +14,7 @@ class Connector {
 
   Connections run() {
     for (Leaf& leaf : graph_.leaves) connect_leaf(leaf);
+    connect_reset(graph_.root);
     connect_subgraphs(graph_.root);
     for (const WrittenOutput& output : graph_.root.document->outputs) {
       Arrival arrival = resolver_.resolve(graph_.root, output.from);
@@ -129,7 +130,21 @@ class Connector {
       if (arrival.state == Arrival::State::connected && arrival.edge.delay == 0)
         result_.subgraph_outputs.push_back({inner.prefix + output.name.text, arrival.edge.from, output.name.where});
     }
+    connect_reset(inner);
     connect_subgraphs(inner);
+  }
+
+  void connect_reset(const Scope& scope) {
+    if (!scope.document->reset) return;
+    const Text& reset = *scope.document->reset;
+    Arrival arrival = resolver_.resolve(scope, reset);
+    arrival.edge.where = reset.where;
+    if (arrival.state == Arrival::State::connected && arrival.edge.delay != 0) {
+      errors_.error(reset.where, "a reset must be of the same frame; '" + reset.text + "' is delayed where this graph is used",
+                    scope.included_from());
+      arrival = {};
+    }
+    result_.resets.emplace(&scope, std::move(arrival));
   }
 
   // An edge into an input of a subgraph.

@@ -18,6 +18,7 @@ struct Connections {
   std::vector<Crossing> crossings;
   std::vector<Arrival> outputs;               ///< of the whole graph, as in its document
   std::vector<GraphOutput> subgraph_outputs;  ///< "svgf.color"
+  std::map<const Scope*, Arrival> resets;     ///< of the scopes that have one
 };
 
 /// Fills in Leaf::inputs of every leaf.

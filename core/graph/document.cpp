@@ -15,7 +15,8 @@ class Reader {
 
   std::optional<Document> read(const Json& root) {
     if (!expect(root, Json::Kind::object, "a graph", errors_) || !check_version(root)) return std::nullopt;
-    const Fields fields(root, "the graph", {"$schema", "quell", "name", "doc", "inputs", "params", "nodes", "outputs"}, errors_);
+    const Fields fields(root, "the graph", {"$schema", "quell", "name", "doc", "inputs", "params", "nodes", "outputs", "reset"},
+                        errors_);
     fields.text_or_empty("$schema");
     document_.doc = fields.text_or_empty("doc");
     document_.name = fields.text_or_empty("name");
@@ -24,6 +25,7 @@ class Reader {
     read_params(fields.find("params", Json::Kind::object));
     if (const Json* nodes = required(root, fields, "nodes", "at least one node")) document_.nodes = read_nodes(*nodes, errors_);
     if (const Json* outputs = required(root, fields, "outputs", "at least one output")) read_outputs(*outputs);
+    document_.reset = fields.text("reset");
     check_names();
     return std::move(document_);
   }

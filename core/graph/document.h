@@ -85,6 +85,7 @@ struct Document {
   std::vector<WrittenParam> params;
   std::vector<WrittenNode> nodes;
   std::vector<WrittenOutput> outputs;
+  std::optional<Text> reset;
 
   /// The folder that relative paths in the file are taken from.
   std::filesystem::path folder() const { return std::filesystem::path(source->name).parent_path(); }

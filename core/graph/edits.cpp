@@ -40,6 +40,7 @@ void for_each_reader(Document& document, std::string_view node, const std::funct
       }
   for (WrittenOutput& output : document.outputs)
     if (is_meant(output.from)) call({output.from, nullptr, {}, "the output '" + output.name.text + "' of the graph"});
+  if (document.reset && is_meant(*document.reset)) call({*document.reset, nullptr, {}, "the reset of the graph"});
 }
 
 Document& own_document(Unfolded& graph, Scope& scope) {

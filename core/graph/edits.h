@@ -29,7 +29,7 @@ std::optional<OutputName> split_source(std::string_view source);
 /// A place in a document that names a source.
 struct Reader {
   Text& from;
-  const WrittenNode* node = nullptr;  ///< null: the outputs of the graph
+  const WrittenNode* node = nullptr;  ///< null: the outputs of the graph, or its reset
   std::string_view input;             ///< of the node
   std::string label;                  ///< "the input 'color' of 'blend'"
 };

@@ -48,6 +48,10 @@ struct Node {
   const quell_pass_desc* pass = nullptr;
   std::shared_ptr<const PassInstance> instance;
   std::vector<std::vector<Edge>> inputs;  ///< for each input port of the pass; empty when unconnected
+  /// Of type value. Where the first number of one is not 0, the node's edges from earlier frames carry nothing, and those of
+  /// later frames do not reach beyond. Empty when it has no such edges. Of the graph, then of the subgraphs that the node is part
+  /// of.
+  std::vector<Endpoint> resets;
   Position where;
   std::string doc = {};  ///< what the graph's author says of it
 };

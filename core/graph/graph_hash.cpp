@@ -85,6 +85,7 @@ class Writer {
           need(edge.from);
           if (edge.delay != 0 && edge.initial.kind == Initial::Kind::endpoint) need(edge.initial.endpoint);
         }
+      for (const Endpoint& reset : node.resets) need(reset);
     }
     return text(results);
   }
@@ -130,7 +131,14 @@ class Writer {
       if (!node.inputs[i].empty()) ports[QUELL_AT(quell_port_desc, node.pass->inputs, i)->name] = "[" + sources + "]\n";
     }
     return quote_json(node.pass->id) + " version " + std::to_string(node.pass->version) + "\n" + joined("  param ", params) +
-           joined("  in ", ports);
+           joined("  in ", ports) + resets_text(node);
+  }
+
+  // Graphs without resets keep the text that they have always had.
+  std::string resets_text(const Node& node) const {
+    std::string sources;
+    for (const Endpoint& reset : node.resets) sources += (sources.empty() ? "" : ", ") + source(reset);
+    return sources.empty() ? "" : "  reset [" + sources + "]\n";
   }
 
   std::string edge_text(const Edge& edge) const {

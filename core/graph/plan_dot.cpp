@@ -184,11 +184,20 @@ class Drawing {
       const Node& node = node_of(index);
       for (std::size_t port = 0; port < node.inputs.size(); ++port)
         for (std::size_t item = 0; item < node.inputs[port].size(); ++item) draw_edge(index, port, item, node.inputs[port][item]);
+      for (const Endpoint& reset : node.resets) draw_reset(index, reset);
     }
     for (const GraphOutput& output : graph_.outputs)
       out_ += "  " + place_of(output.from) + " -> " + quote_dot("output " + output.name) + " [color=\"" +
               std::string(color(graph_.type(output.from), is_gone(output.from))) +
               "\", edgetooltip=" + quote_dot(graph_.describe(output.from) + " -> output " + output.name) + "];\n";
+  }
+
+  void draw_reset(int index, const Endpoint& reset) {
+    const bool gone = gone_.contains(index) || is_gone(reset);
+    const std::string tooltip = quote_dot(graph_.describe(reset) + " resets the history of " + node_of(index).name);
+    out_ += "  " + place_of(reset) + " -> " + quote_dot(node_of(index).name) + " [color=\"" +
+            std::string(color(QUELL_TYPE_VALUE, gone)) +
+            "\", style=dotted, arrowhead=tee, label=\" reset \", edgetooltip=" + tooltip + ", labeltooltip=" + tooltip + "];\n";
   }
 
   void draw_edge(int index, std::size_t port, std::size_t item, const Edge& edge) {

@@ -1,5 +1,6 @@
 #include "quell/graph/plan_presence.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "quell/graph/plan_ports.h"
@@ -99,6 +100,9 @@ std::vector<Read> reads(const Node& node, const Presence& presence) {
   for (const std::vector<Edge>& port : node.inputs)
     for (const Edge& edge : port)
       for (const Read& read : reads(edge, presence)) found.push_back(read);
+  if (std::ranges::any_of(found, [](const Read& read) { return read.delay > 0; }))
+    for (const Endpoint& reset : node.resets)
+      if (presence.has(reset)) found.push_back({reset, 0});
   return found;
 }
 

@@ -49,7 +49,7 @@ struct Read {
 
 /// Everything that an edge reads of what is there.
 std::vector<Read> reads(const Edge& edge, const Presence& presence);
-/// The same over all edges of a node, in the order of its ports.
+/// The same over all edges of a node, in the order of its ports; where some of them read history, then what resets it.
 std::vector<Read> reads(const Node& node, const Presence& presence);
 
 /// Which nodes the roots need, in this frame or in another.

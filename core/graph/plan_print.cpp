@@ -1,5 +1,6 @@
 // describe(Plan): what `quell graph` prints.
 #include <algorithm>
+#include <map>
 #include <sstream>
 
 #include "quell/graph/plan.h"
@@ -169,7 +170,23 @@ class Printer {
       const std::size_t kept = bytes_of(history);
       table.add_row({graph_.describe(history.from), span, kept > 0 ? right_aligned(kept) : ""});
     }
-    return table.render();
+    return table.render() + resets();
+  }
+
+  // Which nodes each of them holds for.
+  std::string resets() const {
+    std::map<Endpoint, std::string> readers;
+    for (const PlannedNode& planned : plan_.nodes)
+      for (const Read& read : reads(node_of(planned.node), presence_))
+        if (read.delay > 0) {
+          for (const Endpoint& reset : node_of(planned.node).resets)
+            if (presence_.has(reset)) readers[reset] += (readers[reset].empty() ? "" : ", ") + node_of(planned.node).name;
+          break;
+        }
+    std::string text;
+    for (const auto& [reset, names] : readers)
+      text += wrap("reset where " + graph_.describe(reset) + " is not 0, for " + names, 2);
+    return text;
   }
 
   std::string loops() const {

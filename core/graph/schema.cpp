@@ -189,6 +189,9 @@ Json root_properties() {
       .add("params", params_schema())
       .add("nodes", nodes_schema())
       .add("outputs", outputs_schema())
+      .add("reset", detail::text_schema(kSourcePattern,
+                                        "Of type value, a node's output or an input of the graph: where its first number is not "
+                                        "0, the frame begins without history."))
       .take();
 }
 

@@ -97,6 +97,8 @@ void check_types(const Unfolded& graph, const Connections& connections, Diagnost
   // What goes wrong where an edge enters a subgraph need not be told again inside of it, so these come first.
   for (const Crossing& crossing : connections.crossings)
     checker.check(crossing.arrival, QUELL_TYPE_BIT(crossing.input->type), crossing.label, *crossing.scope);
+  for (const auto& [scope, reset] : connections.resets)
+    checker.check(reset, QUELL_TYPE_BIT(QUELL_TYPE_VALUE), "\"reset\" ", *scope);
   for (const Leaf& leaf : graph.leaves)
     for (std::size_t i = 0; i < leaf.inputs.size(); ++i)
       for (const Arrival& arrival : leaf.inputs[i])

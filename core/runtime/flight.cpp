@@ -66,6 +66,14 @@ bool Flight::is_undone(std::int64_t frame, int step) {
   return false;
 }
 
+// In how many of the frames after `frame` the step is not done.
+int Flight::count_undone_since(std::int64_t frame, int step) {
+  int count = 0;
+  for (std::size_t index = retired_; index < begun_; ++index)
+    if (frames_[index] > frame && !flying(index).done[at(step)]) ++count;
+  return count;
+}
+
 void Flight::begin(bool is_readable) {
   const std::size_t index = begun_;
   InFlight& frame = flying(index);
@@ -78,6 +86,8 @@ void Flight::begin(bool is_readable) {
     frame.waits[step] = static_cast<int>(wired.needs.size());
     for (const DelayedWait& wait : wired.waits)
       if (is_undone(frames_[index] - wait.delay, wait.step)) ++frame.waits[step];
+    for (const DelayedWait& wait : wired.reset_waits)
+      frame.waits[step] += count_undone_since(frames_[index] - wait.delay, wait.step);
     ++frame.waits[step];  // for the frame itself
     wake(index, static_cast<int>(step));
   }
@@ -147,6 +157,9 @@ bool Flight::complete(const FrameStep& node) {
   for (const DelayedWait& waiting : wired.awaited_by)
     for (std::size_t index = node.index + 1; index < begun_; ++index)
       if (frames_[index] == frames_[node.index] + waiting.delay) wake(index, waiting.step);
+  for (const DelayedWait& waiting : wired.resets_for)
+    for (std::size_t index = node.index + 1; index < begun_; ++index)
+      if (frames_[index] < frames_[node.index] + waiting.delay) wake(index, waiting.step);
   return frame.undone == 0;
 }
 

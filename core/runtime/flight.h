@@ -67,6 +67,7 @@ class Flight {
   };
   InFlight& flying(std::size_t index) { return in_flight_[place(index)]; }
   bool is_undone(std::int64_t frame, int step);
+  int count_undone_since(std::int64_t frame, int step);
   void wake(std::size_t index, int step);
   std::size_t price(const FrameStep& node);
   std::optional<FrameStep> best();

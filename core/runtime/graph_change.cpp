@@ -28,7 +28,9 @@ class Comparison {
     const auto same_port = [&](const std::vector<Edge>& a, const std::vector<Edge>& b) {
       return std::ranges::equal(a, b, [&](const Edge& x, const Edge& y) { return same_edge(x, y); });
     };
-    return std::ranges::equal(found->second->inputs, node.inputs, same_port);
+    const auto same_reset = [&](const Endpoint& a, const Endpoint& b) { return same_endpoint(a, b); };
+    return std::ranges::equal(found->second->inputs, node.inputs, same_port) &&
+           std::ranges::equal(found->second->resets, node.resets, same_reset);
   }
 
  private:
@@ -65,7 +67,7 @@ std::vector<bool> find_unchanged(const Graph& before, const Graph& now, const st
       for (const Edge& edge : port)
         if (is_changed(edge.from) || (edge.initial.kind == Initial::Kind::endpoint && is_changed(edge.initial.endpoint)))
           return true;
-    return false;
+    return std::ranges::any_of(node.resets, is_changed);
   };
   for (bool spreads = true; spreads;) {
     spreads = false;

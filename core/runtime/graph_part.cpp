@@ -20,6 +20,7 @@ class Taker {
           need(edge.from);
           if (edge.initial.kind == Initial::Kind::endpoint) need(edge.initial.endpoint);
         }
+      for (const Endpoint& reset : node.resets) need(reset);
     }
     return build(results);
   }
@@ -52,12 +53,14 @@ class Taker {
       part.nodes.push_back(static_cast<int>(i));
       graph->nodes.push_back(whole_.nodes[i]);
     }
-    for (Node& node : graph->nodes)
+    for (Node& node : graph->nodes) {
       for (std::vector<Edge>& port : node.inputs)
         for (Edge& edge : port) {
           edge.from = translate(edge.from);
           if (edge.initial.kind == Initial::Kind::endpoint) edge.initial.endpoint = translate(edge.initial.endpoint);
         }
+      for (Endpoint& reset : node.resets) reset = translate(reset);
+    }
     for (const PlannedResult& result : results) graph->outputs.push_back({result.name, translate(result.from), {}});
     part.graph = graph;
     return part;

@@ -13,13 +13,29 @@ namespace quell {
 /// A line for each of Plan::histories: the frames that the delays reach back to, and those in flight. Not thread-safe.
 class History {
  public:
-  /// `frames_in_flight`: how far frames may run ahead of the last call of advance().
-  History(const Plan& plan, int frames_in_flight) {
+  /// `frames_in_flight`: how far frames may run ahead of the last call of advance(). `cuts`: frames, ascending, before which all
+  /// history ends. `resets`: how many things end it where they choose to.
+  History(const Plan& plan, int frames_in_flight, std::vector<std::int64_t> cuts = {}, std::size_t resets = 0)
+      : cuts_(std::move(cuts)), resets_(resets) {
     for (const PlannedHistory& kept : plan.histories) {
       Line& line = lines_.emplace_back(Line{kept.frames, {}});
       line.items.reserve(std::min<std::size_t>(static_cast<std::size_t>(kept.frames) + static_cast<std::size_t>(frames_in_flight),
                                                kMostReserved));
+      longest_ = std::max(longest_, kept.frames);
     }
+  }
+  /// Whether no cut lies between two frames, whichever of them is the earlier one.
+  bool is_uncut(std::int64_t a, std::int64_t b) const { return !is_any_between(cuts_, a, b); }
+  /// Whether something that an earlier frame yielded lasts until a later one, for who heeds these resets.
+  bool lasts(std::int64_t earlier, std::int64_t later, const std::vector<int>& resets) const {
+    return is_uncut(earlier, later) && std::ranges::none_of(resets, [&](int reset) {
+             return is_any_between(resets_[static_cast<std::size_t>(reset)], earlier, later);
+           });
+  }
+  /// From now on nothing lasts from frames before `frame` until that frame, or later ones. Frames may come in any order.
+  void reset(int reset, std::int64_t frame) {
+    Frames& frames = resets_[static_cast<std::size_t>(reset)];
+    frames.insert(std::ranges::lower_bound(frames, frame), frame);
   }
   /// Nothing when that frame is not part of the run, failed, or is too long ago.
   Item find(int line, std::int64_t frame) const {
@@ -36,10 +52,12 @@ class History {
   void advance(std::int64_t frame) {
     for (Line& line : lines_)
       line.items.erase(line.items.begin(), std::ranges::upper_bound(line.items, frame - line.reach, {}, &Kept::first));
+    for (Frames& frames : resets_) frames.erase(frames.begin(), std::ranges::upper_bound(frames, frame - longest_));
   }
   /// Lets go of `frame` and all after it, which will be computed again, or were not finished.
   void forget_from(std::int64_t frame) {
     for (Line& line : lines_) line.items.erase(std::ranges::lower_bound(line.items, frame, {}, &Kept::first), line.items.end());
+    for (Frames& frames : resets_) frames.erase(std::ranges::lower_bound(frames, frame), frames.end());
   }
 
  private:
@@ -50,7 +68,17 @@ class History {
     int reach;
     Items items;
   };
+  using Frames = std::vector<std::int64_t>;  // ascending
+  // Whether one of the frames lies after the earlier one, up to the later one.
+  static bool is_any_between(const Frames& frames, std::int64_t a, std::int64_t b) {
+    const auto next = std::ranges::upper_bound(frames, std::min(a, b));
+    return next != frames.end() && *next <= std::max(a, b);
+  }
+
   std::vector<Line> lines_;
+  int longest_ = 0;  // reach of all
+  Frames cuts_;
+  std::vector<Frames> resets_;  // of each: the frames that it was given in
 };
 
 }  // namespace quell

@@ -6,13 +6,14 @@
 
 namespace quell {
 
-// A frame that looks ahead past the end of the run finds nothing there.
+// A frame that looks ahead past the end of the run, or a cut, finds nothing there.
 std::vector<InputReader::Key> InputReader::keys(std::int64_t frame, const PlanState& state) const {
   std::vector<Key> keys;
   for (std::size_t input = 0; input < state.plan.input_used.size(); ++input)
     if (state.plan.input_used[input]) keys.push_back({frame, input});
   for (const AheadRead& ahead : state.wiring.ahead)
-    if (frames_.contains(frame + ahead.frames)) keys.push_back({frame + ahead.frames, static_cast<std::size_t>(ahead.input)});
+    if (frames_.contains(frame + ahead.frames) && state.history.is_uncut(frame, frame + ahead.frames))
+      keys.push_back({frame + ahead.frames, static_cast<std::size_t>(ahead.input)});
   return keys;
 }
 
@@ -72,7 +73,8 @@ FrameInputs InputReader::take(FrameReport& report, const PlanState& state) {
   FrameInputs taken;
   // Those that look ahead share what is there; one that cannot be read counts as absent until its own turn reports it.
   for (const AheadRead& ahead : state.wiring.ahead) {
-    const Read* read = find(report.frame + ahead.frames, static_cast<std::size_t>(ahead.input));
+    const std::int64_t frame = report.frame + ahead.frames;
+    const Read* read = state.history.is_uncut(report.frame, frame) ? find(frame, static_cast<std::size_t>(ahead.input)) : nullptr;
     taken.ahead.push_back(read ? read->item : Item());
   }
   taken.items.resize(graph_.inputs.size());

@@ -48,6 +48,7 @@ void Lane::begin(std::int64_t frame, FrameInputs inputs) {
   std::ranges::fill(seconds_, 0.0);
   for (std::size_t value = 0; value < inputs.items.size(); ++value) {
     for (const int line : state_.wiring.lines[value]) state_.history.add(line, frame, inputs.items[value]);
+    note_reset(static_cast<int>(value), inputs.items[value]);
     if (readers_[value] > 0) values_[value] = std::move(inputs.items[value]);
   }
 }
@@ -73,11 +74,12 @@ Item Lane::take(int value) {
   return --readers_[at(value)] == 0 ? std::exchange(values_[at(value)], {}) : values_[at(value)];
 }
 
-Item Lane::fetch_item(const Fetch& fetch) {
+Item Lane::fetch_item(const Fetch& fetch, const std::vector<int>& resets) {
   if (fetch.value >= 0) return take(fetch.value);
   Item initial = take(fetch.initial);
   Item item;
-  if (fetch.line >= 0) item = state_.history.find(fetch.line, frame_ - fetch.delay);
+  if (fetch.line >= 0 && state_.history.lasts(frame_ - fetch.delay, frame_, resets))
+    item = state_.history.find(fetch.line, frame_ - fetch.delay);
   if (fetch.ahead >= 0) item = ahead_[at(fetch.ahead)];
   // History starts anew with another size, but what lies ahead may be of a size that the pass was not asked about.
   if (fits(item, fetch.planned)) return item;
@@ -85,9 +87,10 @@ Item Lane::fetch_item(const Fetch& fetch) {
 }
 
 void Lane::fetch(int step) {
+  const std::vector<int>& resets = state_.wiring.steps[at(step)].resets;
   const std::vector<std::vector<Fetch>>& fetches = state_.wiring.steps[at(step)].fetches;
   for (std::size_t port = 0; port < fetches.size(); ++port)
-    for (std::size_t i = 0; i < fetches[port].size(); ++i) inputs_[at(step)][port][i] = fetch_item(fetches[port][i]);
+    for (std::size_t i = 0; i < fetches[port].size(); ++i) inputs_[at(step)][port][i] = fetch_item(fetches[port][i], resets);
 }
 
 void Lane::run(int step) {
@@ -125,9 +128,17 @@ void Lane::publish(int step) {
     for (Item& output : port) {
       Item item = std::exchange(output, {});
       for (const int line : state_.wiring.lines[at(value)]) state_.history.add(line, frame_, item);
+      note_reset(value, item);
       if (readers_[at(value)] > 0) values_[at(value)] = std::move(item);
       ++value;
     }
+}
+
+void Lane::note_reset(int value, const Item& item) {
+  const Values* numbers = item.values();
+  if (!numbers || numbers->size() == 0 || *numbers->begin() == 0) return;
+  for (std::size_t reset = 0; reset < state_.wiring.resets.size(); ++reset)
+    if (state_.wiring.resets[reset].value == value) state_.history.reset(static_cast<int>(reset), frame_);
 }
 
 int Lane::failed_step() const {

@@ -53,7 +53,8 @@ class Lane {
 
  private:
   Item take(int value);
-  Item fetch_item(const Fetch& fetch);
+  Item fetch_item(const Fetch& fetch, const std::vector<int>& resets);
+  void note_reset(int value, const Item& item);
   void drop_inputs(int step);
 
   PlanState& state_;

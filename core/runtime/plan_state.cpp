@@ -23,8 +23,8 @@ Item make_constant(const InitialConstant& constant, BufferPool& pool) {
 
 }  // namespace
 
-PlanState::PlanState(Plan to_run, int frames_in_flight, BufferPool& pool)
-    : plan(std::move(to_run)), wiring(plan), history(plan, frames_in_flight) {
+PlanState::PlanState(Plan to_run, int frames_in_flight, BufferPool& pool, std::vector<std::int64_t> cuts)
+    : plan(std::move(to_run)), wiring(plan), history(plan, frames_in_flight, std::move(cuts), wiring.resets.size()) {
   for (const InitialConstant& constant : wiring.constants) constants.push_back(make_constant(constant, pool));
 }
 

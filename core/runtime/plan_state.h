@@ -14,7 +14,8 @@ struct PlanState {
   History history;
   std::vector<Item> constants;  ///< of Wiring::constants
 
-  PlanState(Plan to_run, int frames_in_flight, BufferPool& pool);
+  /// `cuts`: see History.
+  PlanState(Plan to_run, int frames_in_flight, BufferPool& pool, std::vector<std::int64_t> cuts = {});
 };
 
 }  // namespace quell

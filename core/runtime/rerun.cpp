@@ -139,7 +139,7 @@ void RerunTurn::finish(const std::vector<FrameReport>& reports) {
     if (endpoint.node >= 0 && !s_.memory.has_all(name, frames_)) s_.memory.forget(name);
   if (reports.size() == frames_.size()) s_.steady.merge(used_inputs(plan_));
   std::erase_if(s_.steady, [&](const std::string& input) { return !shapes_.contains(input); });  // another one may get the name
-  s_.graph = graph_, s_.frames = frames_, s_.shapes = shapes_;
+  s_.graph = graph_, s_.frames = frames_, s_.cuts = s_.options.cuts, s_.shapes = shapes_;
   s_.stamps = std::move(stamps_), s_.complete = std::move(complete);
   report_.frames = reports;
   if (!is_steady_) s_.forget(), s_.why_forgotten = kUnsteady;

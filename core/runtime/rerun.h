@@ -27,9 +27,9 @@ struct RerunReport {
 struct RerunState;
 
 /// After a run, the values of nodes stay in memory for all frames, and so do inputs that take time to read. The next run compares
-/// its graph with the one before, node by node (by name): pass, parameters, sources, delays and initial values. What differs, and
-/// all that depends on it, also through delayed edges, is computed; it reads the rest from memory. Handed out are the results
-/// that this may change; they are, bit for bit, those of a run of the whole graph.
+/// its graph with the one before, node by node (by name): pass, parameters, sources, delays, initial values and resets. What
+/// differs, and all that depends on it, also through delayed edges, is computed; it reads the rest from memory. Handed out are
+/// the results that this may change; they are, bit for bit, those of a run of the whole graph.
 ///
 /// At most half of the memory limit is for what is remembered: nodes nearest to the outputs first, then inputs; the runs have
 /// what is left. Where one frame needs more than that, nothing is remembered. Values are not remembered, but computed again, of a

@@ -84,6 +84,7 @@ void RerunTurn::compare() {
     return start_anew("");
   }
   if (s_.frames != frames_) return start_anew("other frames are computed");
+  if (s_.cuts != s_.options.cuts) return start_anew("history is cut elsewhere");
   for (const auto& [name, shape] : shapes_)
     if (const auto before = s_.shapes.find(name); before != s_.shapes.end() && !same_shape(before->second, shape))
       return start_anew("the input '" + name + "' has another size or type");

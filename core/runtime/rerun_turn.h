@@ -25,7 +25,7 @@ struct RerunState {
   Remembered memory;
   // Of the run before; no graph: there was none, or it is forgotten.
   std::shared_ptr<const Graph> graph;
-  std::vector<std::int64_t> frames;
+  std::vector<std::int64_t> frames, cuts;
   InputShapes shapes;
   std::map<std::string, FileStamps> stamps;             // of the files that each node's parameters name
   std::set<std::string> steady;                         // inputs known to be there in every frame, in one shape

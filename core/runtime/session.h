@@ -38,9 +38,12 @@ enum class Schedule {
 struct SessionOptions {
   int threads = 0;  ///< that compute, decode and encode at a time; 0: as many as this process may use
   Schedule schedule = Schedule::concurrent;
-  int frames_in_flight = 0;             ///< most frames at a time, from reading to writing; 0: see choose_window()
-  std::size_t memory = 0;               ///< most bytes that the pool may hold; 0: half of what this process may have
-  bool stop_on_error = false;           ///< no frame after one that failed is handed out
+  int frames_in_flight = 0;    ///< most frames at a time, from reading to writing; 0: see choose_window()
+  std::size_t memory = 0;      ///< most bytes that the pool may hold; 0: half of what this process may have
+  bool stop_on_error = false;  ///< no frame after one that failed is handed out
+  /// Frames before which all history ends, as at a cut of the film: no edge reaches from one side to the other, whatever its
+  /// delay, and an edge that would yields its initial value. In any order.
+  std::vector<std::int64_t> cuts = {};
   std::vector<std::string> dumps = {};  ///< inner images ("node.port", or a graph input) handed out beside the outputs
   std::function<void(int level, const std::string& message)> log = {};  ///< levels QUELL_LOG_*; from any thread
   std::function<bool()> cancelled = {};                                 ///< asked often, from any thread

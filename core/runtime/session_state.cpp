@@ -17,6 +17,7 @@ bool same_shape(const std::optional<Shape>& a, const std::optional<Shape>& b) {
 
 SessionState::SessionState(std::shared_ptr<const Graph> checked, SessionOptions given)
     : graph(std::move(checked)), options(std::move(given)), executor(options.threads) {
+  std::ranges::sort(options.cuts);
   services.executor = &executor;
   services.log = options.log;
   services.cancelled = options.cancelled;
@@ -33,7 +34,7 @@ void SessionState::plan_for(const InputShapes& shapes) {
   if (!needs_plan(shapes)) return;
   Plan plan = make_plan(graph, shapes, options.dumps);
   const Window chosen = choose_window(plan, static_cast<int>(executor.slots()), options.frames_in_flight, options.memory);
-  auto next = std::make_unique<PlanState>(std::move(plan), chosen.frames, pool);
+  auto next = std::make_unique<PlanState>(std::move(plan), chosen.frames, pool, options.cuts);
   if (running && options.log) options.log(QUELL_LOG_INFO, "the size of the inputs changed: history starts anew");
   pool.set_limit(chosen.memory);
   lanes_.clear();  // they refer to the former plan

@@ -59,6 +59,32 @@ class Builder {
       std::vector<Fetch>& fetches = wiring_.steps[at(step)].fetches.emplace_back();
       for (const Edge& edge : port) fetches.push_back(fetch(step, edge));
     }
+    wire_resets(step);
+  }
+
+  void wire_resets(int step) {
+    WiredStep& wired = wiring_.steps[at(step)];
+    int longest = 0;
+    for (const std::vector<Fetch>& port : wired.fetches)
+      for (const Fetch& fetch : port) longest = std::max(longest, fetch.line >= 0 ? fetch.delay : 0);
+    if (longest == 0) return;
+    for (const Endpoint& endpoint : node(step).resets) {
+      const int value = plan_.shape(endpoint).present ? value_of(endpoint) : -1;
+      if (value < 0) continue;
+      wired.resets.push_back(reset(value));
+      const int producer = producers_[at(value)];
+      if (producer < 0) continue;  // inputs are there when a frame begins
+      need(step, producer);
+      wired.reset_waits.push_back({producer, longest});
+      wiring_.steps[at(producer)].resets_for.push_back({step, longest});
+    }
+  }
+
+  int reset(int value) {
+    const auto found = std::ranges::find(wiring_.resets, value, &WiredReset::value);
+    const auto index = static_cast<int>(found - wiring_.resets.begin());
+    if (found == wiring_.resets.end()) wiring_.resets.push_back({value, producers_[at(value)]});
+    return index;
   }
 
   Fetch fetch(int step, const Edge& edge) {
@@ -87,9 +113,12 @@ class Builder {
   void read(int step, int value) {
     if (value < 0) return;
     ++wiring_.readers[at(value)];
-    const int producer = producers_[at(value)];
+    if (producers_[at(value)] >= 0) need(step, producers_[at(value)]);
+  }
+
+  void need(int step, int producer) {
     std::vector<int>& needs = wiring_.steps[at(step)].needs;
-    if (producer < 0 || std::ranges::find(needs, producer) != needs.end()) return;
+    if (std::ranges::find(needs, producer) != needs.end()) return;
     needs.push_back(producer);
     wiring_.steps[at(producer)].feeds.push_back(step);
   }

@@ -33,12 +33,21 @@ struct WiredStep {
   std::vector<int> feeds;                   ///< the other way round
   std::vector<DelayedWait> waits;           ///< steps of earlier frames
   std::vector<DelayedWait> awaited_by;      ///< the other way round
+  std::vector<int> resets;                  ///< indices into Wiring::resets: what its history ends with
+  std::vector<DelayedWait> reset_waits;     ///< steps that reset it: of all frames less than `delay` back
+  std::vector<DelayedWait> resets_for;      ///< the other way round
 };
 
 /// An input that is looked at before its turn.
 struct AheadRead {
   int input = 0;
   int frames = 0;  ///< how far ahead
+};
+
+/// A value whose first number, where it is not 0, ends history.
+struct WiredReset {
+  int value = 0;
+  int step = -1;  ///< that yields it; -1 for a graph input
 };
 
 struct InitialConstant {
@@ -54,6 +63,7 @@ struct Wiring {
   std::vector<std::pair<std::string, int>> results;  ///< name and value, as Plan::results()
   std::vector<AheadRead> ahead;
   std::vector<InitialConstant> constants;
+  std::vector<WiredReset> resets;
 
   explicit Wiring(const Plan& plan);
 };

@@ -6,6 +6,7 @@
 
 #include "quell/sequence/sequence_file.h"
 #include "quell/sequence/sequence_state.h"
+#include "quell/sequence/value_file.h"
 #include "quell/text/error.h"
 
 namespace quell {
@@ -203,8 +204,7 @@ Item Sequence::read(std::string_view name, std::int64_t frame, BufferPool& pool)
     const std::optional<Rectangle> window = state_->window();
     return window ? shift(std::move(camera), *window) : camera;
   }
-  if (!is_image(type))
-    throw Error(Fault::input, file.string(), "the input '" + std::string(name) + "' is of type value, which no file can carry");
+  if (type == QUELL_TYPE_VALUE) return read_values(file);
   ImageRequest request = state_->request(input);
   request.camera = [&](int frames_back) { return state_->find_camera(frame - frames_back); };
   return read_image(file, request, pool, [&](const std::string& note) {

@@ -1,5 +1,7 @@
 #include "quell/sequence/sequence_state.h"
 
+#include "quell/sequence/value_file.h"
+
 #include <algorithm>
 
 #include "quell/text/diagnostic.h"
@@ -97,6 +99,7 @@ Shape Sequence::State::shape(std::string_view name) {
     shape.size = probe_image(input.spec.pattern.path(first_frame(input)), request(input));
     require_same_size(input);
   }
+  if (shape.type == QUELL_TYPE_VALUE) shape.value_count = read_values(input.spec.pattern.path(first_frame(input))).size();
   const std::lock_guard lock(mutex);
   return shapes.emplace(name, shape).first->second;
 }

@@ -91,13 +91,16 @@ class Variance final : public Pass {
     const variance::Images in{frame.image("moments"), frame.image("length"),         frame.image("color"),
                               frame.image("depth"),   frame.image("depth_gradient"), frame.image("normal")};
     const FloatOutput variance = frame.output("variance"), color = frame.output("color");
-    frame.parallel_rows(variance.height, [&](int y0, int y1, std::uint32_t slot) {
-      for (int y = y0; y < y1; ++y)
-        variance::variance_row(in, settings_, y, variance, color, static_cast<float*>(frame.slot_scratch(slot)));
-    });
+    frame.parallel_rows(
+        variance.height,
+        [&](int y0, int y1, std::uint32_t slot) {
+          variance::variance_rows(in, settings_, y0, y1, variance, color, static_cast<float*>(frame.slot_scratch(slot)));
+        },
+        kRowsPerChunk);
   }
 
  private:
+  static constexpr int kRowsPerChunk = 32;  // of which each band reads 2 radius rows more
   variance::Settings settings_;
 };
 

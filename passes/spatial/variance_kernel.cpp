@@ -24,12 +24,15 @@ constexpr float kNoSurface = 1e10F;
 constexpr float kSmallestGradient = 1e-8F;    // Falcor's
 constexpr float kSmallestTolerance = 1e-30F;  // of a difference in depth; its reciprocal is still finite
 
-// Rows of the window, each of kPlanes planes.
+// Rows around row y, each of kPlanes planes. A row stays where it is while the window moves on.
 struct Window {
   float* data;
   std::ptrdiff_t stride;  // from plane to plane
-  int radius;
-  float* row(int dy) const { return data + (dy + radius) * kPlanes * stride + radius; }
+  int radius, y;
+  float* row(int dy) const {
+    const int rows = 2 * radius + 1;
+    return data + ((y + dy + radius) % rows) * kPlanes * stride + radius;
+  }
 };
 
 inline std::ptrdiff_t stride(int width, int radius) { return width + 2 * radius + 32; }
@@ -116,9 +119,10 @@ HWY_INLINE Sums sum_taps(const Images& in, const Settings& s, const Window& wind
 
 template <bool kWideNormals>
 void estimate_row(const Images& in, const Settings& s, int y, const FloatOutput& variance, const FloatOutput& color,
-                  const Window& window) {
+                  const Window& window, int& gathered) {
   const D d;
-  for (int dy = -s.radius; dy <= s.radius; ++dy) gather_row(in, y + dy, window, window.row(dy));
+  for (int row = std::max(y - s.radius, gathered); row <= y + s.radius; ++row) gather_row(in, row, window, window.row(row - y));
+  gathered = y + s.radius + 1;
   for (int x = 0; x < variance.width; x += lanes()) {
     const int count = variance.width - x;
     const V length = in.length ? hn::LoadU(d, in.length.row(y) + x) : set(1.0F);
@@ -140,7 +144,7 @@ void estimate_row(const Images& in, const Settings& s, int y, const FloatOutput&
 }
 
 void VarianceRow(const Images& in, const Settings& s, int y, const FloatOutput& variance, const FloatOutput& color,
-                 float* scratch) {
+                 float* scratch, int& gathered) {
   const D d;
   const int width = variance.width;
   for (int c = 0; c < 3; ++c)
@@ -154,11 +158,11 @@ void VarianceRow(const Images& in, const Settings& s, int y, const FloatOutput& 
     any_young = hn::Or(any_young, hn::And(inside, young));
   }
   if (hn::AllFalse(d, any_young)) return;
-  const Window window{scratch, stride(width, s.radius), s.radius};
+  const Window window{scratch, stride(width, s.radius), s.radius, y};
   if (s.wide_normals)
-    estimate_row<true>(in, s, y, variance, color, window);
+    estimate_row<true>(in, s, y, variance, color, window, gathered);
   else
-    estimate_row<false>(in, s, y, variance, color, window);
+    estimate_row<false>(in, s, y, variance, color, window, gathered);
 }
 
 }  // namespace quell::variance::HWY_NAMESPACE
@@ -174,9 +178,10 @@ std::size_t scratch_bytes(int width, int radius) {
   return rows * static_cast<std::size_t>(kPlanes) * static_cast<std::size_t>(stride(width, radius)) * sizeof(float);
 }
 
-void variance_row(const Images& in, const Settings& settings, int y, const FloatOutput& variance, const FloatOutput& color,
-                  float* scratch) {
-  HWY_DYNAMIC_DISPATCH(VarianceRow)(in, settings, y, variance, color, scratch);
+void variance_rows(const Images& in, const Settings& settings, int y0, int y1, const FloatOutput& variance,
+                   const FloatOutput& color, float* scratch) {
+  int gathered = y0 - settings.radius;  // rows before this one are in scratch memory, or are not needed
+  for (int y = y0; y < y1; ++y) HWY_DYNAMIC_DISPATCH(VarianceRow)(in, settings, y, variance, color, scratch, gathered);
 }
 
 }  // namespace quell::variance

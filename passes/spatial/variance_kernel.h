@@ -29,8 +29,8 @@ struct Settings {
 /// Bytes of scratch for images of that width.
 std::size_t scratch_bytes(int width, int radius);
 
-/// Row y of the outputs.
-void variance_row(const Images& in, const Settings& settings, int y, const FloatOutput& variance, const FloatOutput& color,
-                  float* scratch);
+/// Rows [y0, y1) of the outputs.
+void variance_rows(const Images& in, const Settings& settings, int y0, int y1, const FloatOutput& variance,
+                   const FloatOutput& color, float* scratch);
 
 }  // namespace quell::variance

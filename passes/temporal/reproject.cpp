@@ -122,6 +122,12 @@ struct Taps {
   std::array<Tap, kMost> taps;
 
   void add(std::ptrdiff_t offset, double weight) { taps[static_cast<std::size_t>(count++)] = {offset, weight}; }
+  void normalize() {
+    double total = 0;
+    for (const Tap& tap : all()) total += tap.weight;
+    const double scale = count > 0 ? 1 / total : 0;
+    for (int i = 0; i < count; ++i) taps[static_cast<std::size_t>(i)].weight *= scale;
+  }
   std::span<const Tap> all() const { return {taps.data(), static_cast<std::size_t>(count)}; }
 };
 
@@ -134,23 +140,26 @@ struct Job {
   std::ptrdiff_t row_stride = 0;
 };
 
+struct Vector {
+  float x = 0, y = 0, z = 0;
+};
+
+Vector at(const FloatImage& image, int x, int y) {
+  const float* first = image.row(y) + x;
+  return {first[0], first[image.plane_stride], first[2 * image.plane_stride]};
+}
+Vector minus(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+float dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
 // What the taps of a pixel are tested by.
 struct Pixel {
   std::uint32_t id = 0;
-  double depth = 0, depth_tolerance = 0, normal_tolerance = 0;
-  std::array<double, 3> normal{}, position{};
+  float depth = 0, depth_tolerance = 0, normal_tolerance = 0;
+  Vector normal{}, position{};
 };
 
 // A double that can be converted to int, and lies near enough to the screen to matter. False for NaN.
 bool is_near(double coordinate, int size) { return coordinate > -2.0 && coordinate < size + 1.0; }
-
-std::array<double, 3> at(const FloatImage& image, int x, int y) {
-  return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
-}
-std::array<double, 3> minus(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Catmull and Rom's spline at the four pixels around a point that lies `f` behind the second.
 std::array<double, 4> catmull_rom(double f) {
@@ -166,7 +175,7 @@ class ReprojectPass final : public Pass {
     for (const char* output : {"valid", "rejected"}) inference.set_size(output, inference.size("motion"));
     for (const char* input : {"history", "previous_id", "previous_depth", "previous_normal", "previous_position"})
       inference.set_unbounded(input);
-    inference.set_slot_scratch(static_cast<std::size_t>(inference.size("motion").width) * sizeof(Taps));
+    inference.set_slot_scratch(kPixels * sizeof(Taps));
   }
 
   void run(const Frame& frame) const override {
@@ -191,48 +200,60 @@ class ReprojectPass final : public Pass {
       job.width = first.width, job.height = first.height, job.row_stride = first.row_stride;
     }
     frame.parallel_rows(job.valid.height, [&](int y0, int y1, std::uint32_t slot) {
-      Taps* row = static_cast<Taps*>(frame.slot_scratch(slot));
-      for (int y = y0; y < y1; ++y) {
-        for (int x = 0; x < job.valid.width; ++x) {
-          row[x].count = 0, row[x].limited = false;
-          const double rejected = has_history ? find_taps(job, x, y, row[x]) : 1;
-          job.valid.at(x, y) = row[x].count > 0 ? 1.0F : 0.0F;
-          job.rejected.at(x, y) = static_cast<float>(rejected);
+      Taps* taps = static_cast<Taps*>(frame.slot_scratch(slot));
+      for (int y = y0; y < y1; ++y)
+        for (int x = 0; x < job.valid.width; x += kPixels) {
+          const int end = std::min(x + kPixels, job.valid.width);
+          find_taps(job, has_history, x, end, y, taps);
+          for (std::size_t i = 0; i < frame.count("history"); ++i)
+            if (const FloatOutput out = frame.output("history", i))
+              fetch_pixels(taps, frame.image("history", i), job.row_stride, x, end, y, out);
         }
-        for (std::size_t i = 0; i < frame.count("history"); ++i)
-          if (const FloatOutput out = frame.output("history", i))
-            fetch_row(row, frame.image("history", i), job.row_stride, y, out);
-      }
     });
   }
 
  private:
-  // Offsets were found for a row stride; that of an image may be another.
-  static void fetch_row(const Taps* row, const FloatImage& history, std::ptrdiff_t row_stride, int y, const FloatOutput& out) {
-    for (int c = 0; c < out.channels; ++c) {
-      float* to = out.row(y, c);
-      const float* plane = history ? history.row(0, c) : nullptr;
-      for (int x = 0; x < out.width; ++x) to[x] = row[x].count > 0 ? fetch(row[x], plane, row_stride, history.row_stride) : 0.0F;
+  static constexpr int kPixels = 64;  // whose taps are found before any is fetched; they fit the first cache
+
+  void find_taps(const Job& job, bool has_history, int x0, int x1, int y, Taps* taps) const {
+    for (int x = x0; x < x1; ++x, ++taps) {
+      taps->count = 0, taps->limited = false;
+      job.rejected.at(x, y) = has_history ? static_cast<float>(find_taps(job, x, y, *taps)) : 1.0F;
+      job.valid.at(x, y) = taps->count > 0 ? 1.0F : 0.0F;
+      taps->normalize();
     }
   }
 
-  static float fetch(const Taps& taps, const float* plane, std::ptrdiff_t row_stride, std::ptrdiff_t own_stride) {
-    // In double, so that the mean of equal values is that value, bit for bit.
-    double sum = 0, total = 0;
-    for (const Tap& tap : taps.all()) {
-      sum += tap.weight * double{plane[moved(tap.offset, row_stride, own_stride)]};
-      total += tap.weight;
+  static void fetch_pixels(const Taps* taps, const FloatImage& history, std::ptrdiff_t row_stride, int x0, int x1, int y,
+                           const FloatOutput& out) {
+    const int count = x1 - x0;
+    for (int c = 0; c < out.channels; ++c) {
+      float* to = out.row(y, c) + x0;
+      if (!history) {
+        std::fill_n(to, count, 0.0F);
+      } else if (const float* plane = history.row(0, c); history.row_stride == row_stride) {
+        for (int i = 0; i < count; ++i) to[i] = fetch(taps[i], [=](std::ptrdiff_t offset) { return plane[offset]; });
+      } else {  // offsets were found for another stride
+        const std::ptrdiff_t own = history.row_stride;
+        for (int i = 0; i < count; ++i)
+          to[i] = fetch(taps[i], [=](std::ptrdiff_t offset) { return plane[offset / row_stride * own + offset % row_stride]; });
+      }
     }
-    if (!taps.limited) return static_cast<float>(sum / total);
-    float lower = plane[moved(taps.taps[0].offset, row_stride, own_stride)], upper = lower;
-    for (std::size_t i = 1; i < 4; ++i) {
-      const float value = plane[moved(taps.taps[i].offset, row_stride, own_stride)];
-      lower = std::min(lower, value), upper = std::max(upper, value);
-    }
-    return std::min(std::max(static_cast<float>(sum / total), lower), upper);
   }
-  static std::ptrdiff_t moved(std::ptrdiff_t offset, std::ptrdiff_t from, std::ptrdiff_t to) {
-    return from == to ? offset : offset / from * to + offset % from;
+
+  // In double, so that the mean of equal values is that value, bit for bit: weights add up to 1 but for some 1e-16.
+  template <class At>
+  static float fetch(const Taps& taps, const At& at) {
+    double sum = 0;
+    for (const Tap& tap : taps.all()) sum += tap.weight * double{at(tap.offset)};
+    const float value = static_cast<float>(sum);
+    if (!taps.limited) return value;
+    float lower = at(taps.taps[0].offset), upper = lower;
+    for (std::size_t i = 1; i < 4; ++i) {
+      lower = std::min(lower, at(taps.taps[i].offset));
+      upper = std::max(upper, at(taps.taps[i].offset));
+    }
+    return std::min(std::max(value, lower), upper);
   }
 
   Pixel pixel(const Job& job, int x, int y) const {
@@ -241,11 +262,12 @@ class ReprojectPass final : public Pass {
     if (job.depth && job.previous_depth) {
       p.depth = job.depth.at(x, y);
       const double gradient = job.depth_gradient ? job.depth_gradient.at(x, y) : 0;
-      p.depth_tolerance = params_.depth_slope * gradient + params_.depth_relative * std::abs(p.depth) + params_.depth_absolute;
+      p.depth_tolerance = static_cast<float>(params_.depth_slope * gradient + params_.depth_relative * std::abs(p.depth) +
+                                             params_.depth_absolute);
     }
     if (job.normal) p.normal = at(job.normal, x, y);
     const double turn = job.normal_gradient ? job.normal_gradient.at(x, y) : 0;
-    p.normal_tolerance = params_.normal_slope * turn + params_.normal_absolute;
+    p.normal_tolerance = static_cast<float>(params_.normal_slope * turn + params_.normal_absolute);
     if (job.position) p.position = at(job.position, x, y);
     return p;
   }
@@ -257,11 +279,11 @@ class ReprojectPass final : public Pass {
     if (job.depth && job.previous_depth && !(std::abs(job.previous_depth.at(tx, ty) - p.depth) <= p.depth_tolerance))
       return false;
     if (job.normal && job.previous_normal) {
-      const std::array<double, 3> turn = minus(p.normal, at(job.previous_normal, tx, ty));
+      const Vector turn = minus(p.normal, at(job.previous_normal, tx, ty));
       if (!(dot(turn, turn) <= p.normal_tolerance * p.normal_tolerance)) return false;
     }
     if (job.normal && job.position && job.previous_position) {
-      const double height = dot(p.normal, minus(p.position, at(job.previous_position, tx, ty)));
+      const float height = dot(p.normal, minus(p.position, at(job.previous_position, tx, ty)));
       if (!(std::abs(height) <= params_.plane_absolute)) return false;
     }
     return true;

@@ -38,6 +38,8 @@ TEST(ParseSchedule, FillsTheSessionsOptions) {
   const SessionOptions serial = parse_schedule({.executor = "serial"});
   EXPECT_EQ(serial.schedule, Schedule::serial);
   EXPECT_EQ(serial.frames_in_flight, 1);
+  EXPECT_EQ(parse_schedule({.cut = "240,101"}).cuts, (std::vector<std::int64_t>{101, 240}));
+  EXPECT_THROW(parse_schedule({.cut = "first"}), Error);
 }
 
 }  // namespace

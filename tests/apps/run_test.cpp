@@ -89,6 +89,17 @@ TEST_F(Run, StopsAfterAFrameThatFailedWhenToldTo) {
   }
 }
 
+TEST_F(Run, TellsOfACutThatHasNothingToEnd) {
+  make_shot(3);
+  const Outcome outcome = run({"run", make_graph(), text("shot"), "-o", text("out"), "-q", "--cut", "2"});
+  EXPECT_EQ(outcome.code, 0);
+  const Outcome loud = run({"run", make_graph(), text("shot"), "-o", text("out"), "--cut", "2"});
+  EXPECT_THAT(loud.err, HasSubstr("warning: --cut has no effect: every frame of the graph 'small' is computed by itself\n"));
+  const Outcome wrong = run({"run", make_graph(), text("shot"), "-o", text("out"), "--cut", "2-"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("--cut:1:3: error: "));
+}
+
 TEST_F(Run, WithNothingLeftToStopEndsAsUsual) {
   make_shot(2);
   const Outcome outcome =

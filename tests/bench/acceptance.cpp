@@ -26,7 +26,9 @@ struct Subject {
 const std::vector<Subject> kSubjects = {{"scheduler", scheduler_figures},
                                         {"joint_bilateral", joint_bilateral_figures},
                                         {"atrous", atrous_figures},
-                                        {"flip", flip_figures}};
+                                        {"flip", flip_figures},
+                                        {"games202", games202_figures},
+                                        {"svgf", svgf_figures}};
 
 std::vector<std::string> subject_names() {
   std::vector<std::string> names;

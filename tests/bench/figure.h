@@ -25,6 +25,8 @@ std::vector<Figure> scheduler_figures();
 std::vector<Figure> joint_bilateral_figures();
 std::vector<Figure> flip_figures();
 std::vector<Figure> atrous_figures();
+std::vector<Figure> games202_figures();
+std::vector<Figure> svgf_figures();
 
 /// The seconds of several ways to do something, in their order, again and again in alternation, so that all see the same
 /// neighbors: of each the smallest, to which the machine's other work has added least.

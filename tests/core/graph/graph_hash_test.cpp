@@ -46,6 +46,19 @@ std::string with(const std::string& from, const std::string& to, std::string tex
   return text.replace(at, from.size(), to);
 }
 
+TEST(GraphHash, DependsOnWhatResetsHistory) {
+  const std::string with_cuts =
+      with("\"motion\": { \"type\"", "\"cut\": \"value\", \"flash\": \"value\", \"motion\": { \"type\"");
+  const std::string reset = with("\"before\": \"first.color\" }", "\"before\": \"first.color\" }, \"reset\": \"cut\"", with_cuts);
+  EXPECT_NE(hash(reset), hash(with_cuts));
+  EXPECT_NE(hash(reset), hash(with("\"reset\": \"cut\"", "\"reset\": \"flash\"", reset)));
+  const std::string text = canonical_text(*parse(reset));
+  EXPECT_THAT(text, HasSubstr("reset [\"cut\"]"));
+  const auto graph = parse(reset);
+  EXPECT_THAT(canonical_text(*graph, {{"color", graph->find("mix.color")}}), HasSubstr("input \"cut\" value"));
+  EXPECT_THAT(canonical_text(*graph, {{"color", graph->find("first.color")}}), Not(HasSubstr("cut"))) << "it reads no history";
+}
+
 TEST(GraphHash, IsThatOfTheCanonicalTextOnEveryMachine) {
   EXPECT_EQ(canonical_text(*parse(kGraph)), R"(quell graph 1
 input "color" color

@@ -69,6 +69,22 @@ TEST(PlanDot, DashesEdgesWithADelayAndSaysWhatStandsThereAtFirst) {
   EXPECT_THAT(dot, HasSubstr(R"(label=" 1 frame ahead \n else a.color ")"));
 }
 
+TEST(PlanDot, DotsWhatResetsHistoryWhichTheTextNamesToo) {
+  const std::string text = R"({ "quell": 1, "inputs": { "color": "color" }, "nodes": {
+    "average": { "pass": "blend", "in": { "color": "color", "history": { "from": "average.color", "delay": 1, "initial": "none" } } },
+    "meter": { "pass": "meter", "in": { "color": "color" } },
+    "copy": { "pass": "copy", "in": { "image": "average.color" } } },
+    "outputs": { "color": "copy.image" }, "reset": "meter.value" })";
+  const std::string dot = draw(text);
+  EXPECT_THAT(dot, HasSubstr(R"("meter":o0_0:e -> "average" [color=)"));
+  EXPECT_THAT(dot, HasSubstr(R"(style=dotted)"));
+  EXPECT_THAT(dot, Not(HasSubstr(R"("meter":o0_0:e -> "copy")")));
+  EXPECT_FALSE(draw_svg(dot).empty());
+  const Plan plan = plan_of(parse_graph(std::make_shared<SourceText>(SourceText{"reset.json", text}), passes()));
+  EXPECT_THAT(describe(plan), HasSubstr("reset where meter.value is not 0, for average\n"));
+  EXPECT_EQ(plan.graph->nodes[static_cast<std::size_t>(plan.nodes[0].node)].name, "meter") << "before what reads history";
+}
+
 TEST(PlanDot, GraysWhatDoesNotRunAndNamesIt) {
   const std::string text = R"({ "quell": 1, "inputs": { "color": "color", "extra": { "type": "color", "optional": true } },
     "nodes": { "side": { "pass": "copy", "in": { "image": "extra" } },

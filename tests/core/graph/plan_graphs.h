@@ -155,7 +155,7 @@ class Builder {
   }
   Builder& node(const std::string& name, const quell_pass_desc* pass, const Wires& wires,
                 const std::map<std::string, std::int64_t>& params = {}) {
-    graph_->nodes.push_back({name, pass, make_instance(*pass, params), {}, place(name)});
+    graph_->nodes.push_back({name, pass, make_instance(*pass, params), {}, {}, place(name)});
     wires_.push_back(wires);
     return *this;
   }

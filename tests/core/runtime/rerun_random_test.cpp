@@ -38,7 +38,7 @@ class Editor {
         node.in_place = !node.in_place;
         return;
       case Change::failures:
-        if (node.kind == Kind::falter) node.fails = {static_cast<int>(dice_.pick(frames_))};
+        if (node.kind == Kind::falter || node.kind == Kind::pulse) node.fails = {static_cast<int>(dice_.pick(frames_))};
         return;
       case Change::drop_other:
         node.other.clear();
@@ -81,6 +81,11 @@ std::set<std::string> affected(const TestGraph& graph, const std::set<int>& chan
         if (all.contains(wire.from.node) ||
             (wire.start == Wire::Start::place && wire.delay != 0 && all.contains(wire.place.node)))
           all.insert(i);
+    for (int i = 0; i < static_cast<int>(graph.nodes.size()); ++i)
+      for (const Place& reset : graph.resets_of(i))
+        if (all.contains(reset.node) &&
+            std::ranges::any_of(wires(graph.nodes[static_cast<std::size_t>(i)]), [](const Wire& wire) { return wire.delay > 0; }))
+          all.insert(i);
   }
   std::set<std::string> names;
   for (const int node : all) names.insert(graph.name(node));
@@ -119,6 +124,7 @@ class Case {
 
   SessionOptions options(const std::shared_ptr<const Graph>& graph) {
     SessionOptions options = concurrent(setting_);
+    options.cuts = scene_.cuts;
     for (const Place& dump : graph_.dumps) options.dumps.push_back(graph_.name(dump));
     if (!limits_memory_) return options;
     InputShapes shapes;
@@ -165,7 +171,9 @@ class Case {
   void expect_only_affected(const RerunReport& got, const std::vector<TestNode>& before) {
     std::set<int> changed;
     for (int i = 0; i < static_cast<int>(before.size()); ++i)
-      if (before[static_cast<std::size_t>(i)].salt != graph_.nodes[static_cast<std::size_t>(i)].salt) changed.insert(i);
+      if (const TestNode& node = graph_.nodes[static_cast<std::size_t>(i)];
+          node.kind != Kind::pulse && before[static_cast<std::size_t>(i)].salt != node.salt)
+        changed.insert(i);
     const std::set<std::string> may = affected(graph_, changed);
     for (std::size_t i = 0; i < got.nodes.size(); ++i)
       EXPECT_EQ(got.computed[i], may.contains(got.nodes[i]) ? static_cast<int>(scene_.frames.size()) : 0) << got.nodes[i];

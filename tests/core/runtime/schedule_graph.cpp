@@ -16,7 +16,7 @@ PortType TestGraph::type(const Place& place) const {
   if (place.node < 0) return inputs[static_cast<std::size_t>(place.port)].type;
   const TestNode& at = node(place);
   if (at.kind == Kind::reduce) return QUELL_TYPE_SCALAR;
-  if (at.kind == Kind::tally) return QUELL_TYPE_VALUE;
+  if (at.kind == Kind::tally || at.kind == Kind::pulse) return QUELL_TYPE_VALUE;
   return type(at.kind == Kind::parts ? at.list[static_cast<std::size_t>(place.item)].from : at.main[0].from);
 }
 
@@ -40,6 +40,13 @@ bool TestGraph::present(const Place& place) const {
   return present(mirrored.from) || always(mirrored);
 }
 
+std::vector<Place> TestGraph::resets_of(int node) const {
+  std::vector<Place> places;
+  for (const auto& [group, place] : resets)
+    if (group == -1 || group == nodes[static_cast<std::size_t>(node)].group) places.push_back(place);
+  return places;
+}
+
 std::string TestGraph::name(int node) const {
   const int group = nodes[static_cast<std::size_t>(node)].group;
   return (group < 0 ? "" : "g" + std::to_string(group) + ".") + "n" + std::to_string(node);
@@ -51,6 +58,7 @@ std::string TestGraph::name(const Place& place) const {
     case Kind::reduce:
       return name(place.node) + ".weight";
     case Kind::tally:
+    case Kind::pulse:
       return name(place.node) + ".count";
     case Kind::parts:
       return name(place.node) + ".items[" + std::to_string(place.item) + "]";
@@ -63,7 +71,7 @@ namespace {
 
 class Generator {
  public:
-  Generator(unsigned seed, const std::vector<std::int64_t>& frames) : dice_(seed), frames_(frames) {}
+  Generator(unsigned seed, const std::vector<std::int64_t>& frames) : dice_(seed), reset_dice_(seed + 9000), frames_(frames) {}
 
   TestGraph run() {
     graph_.inputs = {{"extra", QUELL_TYPE_COLOR, true, dice_.chance(60)}, {"a"}, {"b"}, {"s", QUELL_TYPE_SCALAR}};
@@ -71,9 +79,10 @@ class Generator {
     while (static_cast<int>(graph_.nodes.size()) < nodes) add_node();
     for (int node = 0; node < nodes; ++node) add_history(node);
     add_groups();
+    add_resets();
     graph_.file_order.resize(graph_.nodes.size());
     std::iota(graph_.file_order.begin(), graph_.file_order.end(), 0);
-    for (int i = nodes - 1; i > 0; --i)
+    for (int i = static_cast<int>(graph_.nodes.size()) - 1; i > 0; --i)
       std::swap(graph_.file_order[static_cast<std::size_t>(i)], graph_.file_order[static_cast<std::size_t>(dice_.below(i + 1))]);
     graph_.outputs = choose_present(dice_.from(1, 4));
     graph_.dumps = choose_present(dice_.chance(40) ? 2 : 0);
@@ -202,6 +211,33 @@ class Generator {
     }
   }
 
+  // Whether a value depends, in its own frame, on a node that reads history: any, or one of a subgraph.
+  bool depends_on_history(const Place& place, bool of_groups_alone) const {
+    if (place.node < 0) return false;
+    const TestNode& node = graph_.node(place);
+    for (const Wire& wire : wires(node)) {
+      if (wire.delay > 0 && (!of_groups_alone || node.group >= 0)) return true;
+      if (wire.delay == 0 && depends_on_history(wire.from, of_groups_alone)) return true;
+      if (wire.delay != 0 && wire.start == Wire::Start::place && depends_on_history(wire.place, of_groups_alone)) return true;
+    }
+    return false;
+  }
+
+  // Of the whole graph, and of subgraphs.
+  void add_resets() {
+    for (int group = -1; group < graph_.groups; ++group) {
+      if (!reset_dice_.chance(50)) continue;
+      const std::vector<Place> images =
+          places([&](const Place& place) { return is_image(place) && !depends_on_history(place, group >= 0); });
+      TestNode pulse{.kind = Kind::pulse};
+      pulse.main = {Wire{reset_dice_.pick(images)}};
+      for (const std::int64_t frame : frames_)
+        if (reset_dice_.chance(25)) pulse.fails.push_back(static_cast<int>(frame));
+      graph_.resets[group] = {static_cast<int>(graph_.nodes.size())};
+      graph_.nodes.push_back(std::move(pulse));
+    }
+  }
+
   std::vector<Place> choose_present(int count) {
     const std::vector<Place> all = places([&](const Place& place) { return graph_.present(place); });
     std::vector<Place> chosen;
@@ -212,7 +248,7 @@ class Generator {
     return chosen;
   }
 
-  Dice dice_;
+  Dice dice_, reset_dice_;  // resets do not change what else is drawn
   const std::vector<std::int64_t>& frames_;
   TestGraph graph_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <random>
 #include <string>
@@ -27,7 +28,7 @@ class Dice {
   std::mt19937 engine_;
 };
 
-enum class Kind { stir, soften, reduce, shelter, parts, tally, apply, falter, shrink };
+enum class Kind { stir, soften, reduce, shelter, parts, tally, apply, falter, shrink, pulse };
 
 /// Where a value comes from: an output of a node, or a graph input.
 struct Place {
@@ -52,7 +53,7 @@ struct TestNode {
   int salt = 0;
   int radius = 0;                ///< of soften
   bool in_place = false;         ///< of stir, parts and falter
-  std::vector<int> fails = {};   ///< frames, of falter
+  std::vector<int> fails = {};   ///< frames, of falter; of pulse those with a 1
   std::string how = "chunk";     ///< of falter
   std::vector<Wire> main = {};   ///< one, required
   std::vector<Wire> other = {};  ///< at most one, optional: `other`, `previous` or `by`
@@ -74,6 +75,7 @@ struct TestGraph {
   std::vector<Place> dumps;
   std::vector<int> file_order;  ///< in which nodes are written down
   int groups = 0;
+  std::map<int, Place> resets;  ///< of subgraphs, and of the whole graph at -1
 
   const TestNode& node(const Place& place) const { return nodes[static_cast<std::size_t>(place.node)]; }
   PortType type(const Place& place) const;
@@ -81,6 +83,8 @@ struct TestGraph {
   int level(const Place& place) const;
   /// Whether there is such a value in any frame. What lacks an input that the source does not have is left out.
   bool present(const Place& place) const;
+  /// What resets the history of a node, which may read none.
+  std::vector<Place> resets_of(int node) const;
   /// Whether the wire carries something in every frame.
   bool always(const Wire& wire) const;
   std::string name(int node) const;            ///< "n3", or "g0.n3" in a subgraph

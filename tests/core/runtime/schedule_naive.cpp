@@ -54,6 +54,10 @@ class Passes {
         return same([&](int x, int y, int c) { return apply(at(main_, x, y, c)); });
       case Kind::tally:
         return tally();
+      case Kind::pulse: {
+        const bool is_named = std::ranges::find(node_.fails, frame_) != node_.fails.end();
+        return {QUELL_TYPE_VALUE, {}, {is_named ? 1.0 : 0.0, 17}};
+      }
       case Kind::reduce:
         return paint(QUELL_TYPE_SCALAR, size, [&](int x, int y, int) { return reduce(x, y); });
       case Kind::shrink:
@@ -153,6 +157,26 @@ class Naive {
       need(wire.from);
       if (wire.delay != 0 && wire.start == Wire::Start::place) need(wire.place);
     }
+    for (const Place& reset : heeded(place.node)) need(reset);
+  }
+  // What resets the node's history, when it reads any.
+  std::vector<Place> heeded(int index) const {
+    const std::vector<Wire> all = wires(graph_.nodes[static_cast<std::size_t>(index)]);
+    if (std::ranges::none_of(all, [&](const Wire& wire) { return wire.delay > 0 && graph_.present(wire.from); })) return {};
+    std::vector<Place> places = graph_.resets_of(index);
+    std::erase_if(places, [&](const Place& place) { return !graph_.present(place); });
+    return places;
+  }
+  bool is_cut(std::int64_t a, std::int64_t b) const {
+    return std::ranges::any_of(scene_.cuts, [&](std::int64_t cut) { return std::min(a, b) < cut && cut <= std::max(a, b); });
+  }
+  // Whether one of the frames after `earlier`, up to `later`, resets the history of the node.
+  bool is_reset(int index, std::int64_t earlier, std::int64_t later) {
+    for (const auto& [frame, age] : ages_)
+      for (const Place& reset : heeded(index))
+        if (earlier < frame && frame <= later)
+          if (const Maybe flag = find(reset, frame); flag && flag->numbers[0] != 0) return true;
+    return false;
   }
   bool is_needed(int node, int port = 0) const { return needed_.contains({node, port}); }
 
@@ -191,12 +215,13 @@ class Naive {
     return of_node.ok ? of_node.items[static_cast<std::size_t>(place.item)] : Maybe();
   }
 
-  Maybe fetch(const Wire& wire, std::int64_t frame, Size size) {
+  Maybe fetch(int index, const Wire& wire, std::int64_t frame, Size size) {
     if (wire.delay == 0) return find(wire.from, frame);
     const std::int64_t other = frame - wire.delay;
     Maybe found;
-    if (wire.delay > 0 && ages_.contains(other) && ages_.at(other) == ages_.at(frame)) found = find(wire.from, other);
-    if (wire.delay < 0) found = look_ahead(wire.from, other, scene_.size_of(frame));
+    const bool is_same_age = ages_.contains(other) && ages_.at(other) == ages_.at(frame) && !is_cut(other, frame);
+    if (wire.delay > 0 && is_same_age && !is_reset(index, other, frame)) found = find(wire.from, other);
+    if (wire.delay < 0 && !is_cut(frame, other)) found = look_ahead(wire.from, other, scene_.size_of(frame));
     if (found || wire.start == Wire::Start::none) return found;
     if (wire.start == Wire::Start::place) return find(wire.place, frame);
     const PortType type = graph_.type(wire.from);
@@ -212,7 +237,10 @@ class Naive {
     return input(place.port, frame);
   }
 
-  bool has_what_it_needs(const TestNode& node, std::int64_t frame) {
+  bool has_what_it_needs(int index, std::int64_t frame) {
+    const TestNode& node = graph_.nodes[static_cast<std::size_t>(index)];
+    for (const Place& reset : heeded(index))
+      if (!result(reset.node, frame).ok) return false;
     for (const Wire& wire : wires(node)) {
       const Place* needed = wire.delay == 0 ? &wire.from : wire.start == Wire::Start::place ? &wire.place : nullptr;
       if (needed && needed->node >= 0 && graph_.present(*needed) && !result(needed->node, frame).ok) return false;
@@ -229,13 +257,13 @@ class Naive {
 
   Result compute(int index, std::int64_t frame) {
     const TestNode& node = graph_.nodes[static_cast<std::size_t>(index)];
-    if (!has_what_it_needs(node, frame)) return {};
+    if (!has_what_it_needs(index, frame)) return {};
     if (node.kind == Kind::falter && std::ranges::find(node.fails, frame) != node.fails.end()) return {false, true};
-    Picture main = *fetch(node.main[0], frame, level_size(graph_.level(node.main[0].from), frame));
+    Picture main = *fetch(index, node.main[0], frame, level_size(graph_.level(node.main[0].from), frame));
     const Size size = main.size;
-    Maybe other = node.other.empty() ? Maybe() : fetch(node.other[0], frame, size);
+    Maybe other = node.other.empty() ? Maybe() : fetch(index, node.other[0], frame, size);
     std::vector<Maybe> list;
-    for (const Wire& wire : node.list) list.push_back(fetch(wire, frame, size));
+    for (const Wire& wire : node.list) list.push_back(fetch(index, wire, frame, size));
     const Passes passes(node, std::move(main), std::move(other), std::move(list), frame);
     Result made{true};
     if (node.kind != Kind::parts) made.items = {passes.run()};

@@ -77,6 +77,12 @@ TEST(RandomGraphsOfTheTest, HaveEverythingOften) {
       for (const int input : planned.in_place_of) counts["written in place"] += input >= 0;
     counts["dumps"] += !graph.dumps.empty();
     counts["subgraphs"] += graph.groups > 0;
+    counts["cuts"] += !scene.cuts.empty();
+    for (const auto& [group, place] : graph.resets) {
+      const bool is_given = graph.present(place) && !graph.node(place).fails.empty();
+      counts["resets that are given"] += is_given;
+      counts["resets of subgraphs"] += group >= 0;
+    }
     counts["odd sizes"] += !scene.odd.empty();
     for (const FrameReport& report : outcome.reports) {
       counts["good frames"] += report.ok;
@@ -94,7 +100,7 @@ TEST(RandomGraphsOfTheTest, HaveEverythingOften) {
       }
     }
   }
-  EXPECT_EQ(counts.size(), 14U);
+  EXPECT_EQ(counts.size(), 17U);
   for (const auto& [what, count] : counts) {
     RecordProperty(what, count);
     EXPECT_GE(count, 25) << what;

@@ -28,6 +28,7 @@ Scene random_scene(Dice& dice) {
   if (dice.chance(25)) scene.dirty.insert(any());
   for (int changes = dice.chance(30) ? dice.from(1, 3) : 0; changes > 0; --changes)
     scene.odd[any()] = {dice.from(1, 9), dice.from(1, 9)};
+  for (int cuts = dice.chance(30) ? dice.from(1, 2) : 0; cuts > 0; --cuts) scene.cuts.push_back(any() + dice.below(2));
   return scene;
 }
 
@@ -149,6 +150,7 @@ Outcome run(const std::shared_ptr<const Graph>& graph, const std::vector<TestInp
   PatternSource source(inputs, scene);
   RecordingSink sink(scene.unwritable);
   source.keeps_busy = sink.keeps_busy = keeps_busy;
+  options.cuts = scene.cuts;
   Session session(graph, std::move(options));
   session.pool().fill(0xff);
   Outcome outcome;

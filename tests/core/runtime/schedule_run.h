@@ -21,6 +21,7 @@ struct Scene {
   std::map<std::int64_t, Size> odd = {};                           ///< frames of another size
   std::set<std::pair<std::string, std::int64_t>> unreadable = {};  ///< inputs in some frames
   std::set<std::int64_t> unwritable = {};
+  std::vector<std::int64_t> cuts = {};
   std::set<std::int64_t> dirty = {};  ///< each input has a NaN, at dirty_pixel()
 
   Size size_of(std::int64_t frame) const;

@@ -20,7 +20,8 @@ std::string joined(const std::vector<std::string>& list) {
 }
 
 const char* pass_name(Kind kind) {
-  static const char* const names[] = {"stir", "soften", "reduce", "shelter", "parts", "tally", "apply", "falter", "shrink"};
+  static const char* const names[] = {"stir",  "soften", "reduce", "shelter", "parts",
+                                      "tally", "apply",  "falter", "shrink",  "pulse"};
   return names[static_cast<int>(kind)];
 }
 
@@ -59,19 +60,29 @@ class Writer {
     for (std::size_t i = 0; i < graph_.outputs.size(); ++i)
       outputs.push_back(quoted("out" + std::to_string(i)) + ": " + quoted(source(graph_.outputs[i], -1)));
     for (int group = 0; group < graph_.groups; ++group) inner.push_back(joined(nodes_of(group)));
+    std::vector<std::string> resets;  // first, because they cross borders, too
+    for (int group = -1; group < graph_.groups; ++group) resets.push_back(reset_of(group));
     for (int group = 0; group < graph_.groups; ++group) nodes.push_back(subgraph_node(group));
     for (int group = 0; group < graph_.groups; ++group)
-      std::ofstream(folder + "/g" + std::to_string(group) + ".json") << subgraph(group, inner[static_cast<std::size_t>(group)]);
-    return file(joined(inputs), joined(nodes), joined(outputs));
+      std::ofstream(folder + "/g" + std::to_string(group) + ".json")
+          << subgraph(group, inner[static_cast<std::size_t>(group)], resets[static_cast<std::size_t>(group + 1)]);
+    return file(joined(inputs), joined(nodes), joined(outputs), resets[0]);
   }
 
  private:
-  static std::string file(const std::string& inputs, const std::string& nodes, const std::string& outputs) {
-    return "{\"quell\": 1, \"inputs\": {" + inputs + "},\n\"nodes\": {" + nodes + "},\n\"outputs\": {" + outputs + "}}\n";
+  static std::string file(const std::string& inputs, const std::string& nodes, const std::string& outputs,
+                          const std::string& reset) {
+    return "{\"quell\": 1, \"inputs\": {" + inputs + "},\n\"nodes\": {" + nodes + "},\n\"outputs\": {" + outputs + "}" + reset +
+           "}\n";
   }
   static std::string input_text(PortType type, bool optional) {
     const std::string text = quoted(std::string(name(type)));
     return optional ? "{\"type\": " + text + ", \"optional\": true}" : text;
+  }
+
+  std::string reset_of(int group) {
+    const auto reset = graph_.resets.find(group);
+    return reset == graph_.resets.end() ? "" : ",\n\"reset\": " + quoted(source(reset->second, group));
   }
 
   int group_of(const Place& place) const { return place.node < 0 ? -1 : graph_.node(place).group; }
@@ -103,14 +114,16 @@ class Writer {
     for (const Wire& wire : node.other) in.push_back(quoted(other) + ": " + wire_text(wire, node.group));
     for (const Wire& wire : node.list) list.push_back(wire_text(wire, node.group));
     if (!list.empty()) in.push_back(quoted(node.kind == Kind::parts ? "items" : "more") + ": [" + joined(list) + "]");
-    std::vector<std::string> params{"\"salt\": " + std::to_string(node.salt)};
+    std::vector<std::string> params;
+    if (node.kind != Kind::pulse) params.push_back("\"salt\": " + std::to_string(node.salt));
     if (node.kind == Kind::soften) params.push_back("\"radius\": " + std::to_string(node.radius));
     if (node.in_place && (node.kind == Kind::stir || node.kind == Kind::parts || node.kind == Kind::falter))
       params.emplace_back("\"in_place\": true");
-    if (node.kind == Kind::falter) {
+    if (node.kind == Kind::falter || node.kind == Kind::pulse) {
       std::vector<std::string> frames;
       for (const int frame : node.fails) frames.push_back(std::to_string(frame));
-      params.push_back("\"frames\": [" + joined(frames) + "], \"how\": " + quoted(node.how));
+      params.push_back("\"frames\": [" + joined(frames) + "]");
+      if (node.kind == Kind::falter) params.push_back("\"how\": " + quoted(node.how));
     }
     return "\n  \"n" + std::to_string(index) + "\": {\"pass\": " + quoted(pass_name(node.kind)) + ", \"in\": {" + joined(in) +
            "}, \"params\": {" + joined(params) + "}}";
@@ -134,13 +147,13 @@ class Writer {
     return "\n  " + quoted(name) + ": {\"graph\": " + quoted(name + ".json") + ", \"in\": {" + joined(in) + "}}";
   }
 
-  std::string subgraph(int group, const std::string& nodes) {
+  std::string subgraph(int group, const std::string& nodes, const std::string& reset) {
     std::vector<std::string> inputs, outputs;
     for (const auto& [place, number] : ins_[static_cast<std::size_t>(group)].all())
       inputs.push_back("\"in" + std::to_string(number) + "\": " + input_text(graph_.type(place), !graph_.present(place)));
     for (const auto& [place, number] : outs_[static_cast<std::size_t>(group)].all())
       outputs.push_back("\"o" + std::to_string(number) + "\": " + quoted(local_name(graph_, place)));
-    return file(joined(inputs), nodes, joined(outputs));
+    return file(joined(inputs), nodes, joined(outputs), reset);
   }
 
   const TestGraph& graph_;

@@ -72,6 +72,20 @@ TEST_F(SequenceOf, FramesAreThoseOfAllRequiredInputs) {
   EXPECT_THAT(sequence->inputs()[1].frames, ElementsAre(2, 3, 4));
 }
 
+TEST_F(SequenceOf, ValuesComeFromNumbersListsAndWhatTheRunnerWrites) {
+  for (const char* frame : {"1", "2", "3", "4"}) make_color(std::string("color_") + frame + ".exr");
+  make_text(folder_ / "cut_1.json", "{\"frame\": 1, \"values\": [1]}\n");
+  make_text(folder_ / "cut_2.json", "[0]");
+  make_text(folder_ / "cut_3.json", "0.5");
+  make_text(folder_ / "cut_4.json", "{\"value\": 1}");
+  const auto sequence = open({"cut=" + path("cut_%d.json")});
+  sequence->expect("cut", QUELL_TYPE_VALUE);
+  EXPECT_EQ(sequence->shape("cut")->value_count, 1U);
+  for (const auto& [frame, value] : {std::pair{1, 1.0}, {2, 0.0}, {3, 0.5}})
+    EXPECT_EQ(*read("cut", frame, *sequence).values(), Values{value}) << frame;
+  EXPECT_THAT(read_error("cut", 4, *sequence), testing::HasSubstr("1:1: error: the key \"values\" is missing"));
+}
+
 TEST_F(SequenceOf, AFrameMissingInTheMiddleIsNamed) {
   for (const char* frame : {"0001", "0003"}) make_color(std::string("color.") + frame + ".exr");
   for (const char* frame : {"0001", "0002", "0003"}) make_image(std::string("depth.") + frame + ".exr", {"Z"}, 1);
