@@ -17,7 +17,7 @@ bool is_finite(double value) {
 std::int64_t count_non_finite(const FloatImage& image, Executor& executor) {
   std::atomic<std::int64_t> total{0};
   executor.run(image.height, [&](std::int64_t y, std::uint32_t) {
-    std::int64_t found = 0;
+    int found = 0;  // as wide as a float, so that the loop becomes one of vectors
     for (int c = 0; c < image.channels; ++c) {
       const float* row = image.row(static_cast<int>(y), c);
       for (int x = 0; x < image.width; ++x) found += is_finite(row[x]) ? 0 : 1;

@@ -8,18 +8,18 @@
 //
 // Cost:    4 gathered taps a channel (1 for nearest, 16 for catmull_rom), and as many of each guide, once for all images.
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
+#include "passes/temporal/reproject_kernel.h"
 #include "quell/sdk/pass.h"
 
 namespace quell {
 namespace {
 
-enum class Fetch { bilinear, nearest, truncate, catmull_rom };
+using reproject::Fetch;
 enum class Rescue { none, window };
 
 struct Params {
@@ -108,237 +108,62 @@ const PassInfo kInfo{
                 {"rejected", kScalar, "0 to 1: how much of the history failed the tests"}},
 };
 
-// One pixel's share in the result.
-struct Tap {
-  std::ptrdiff_t offset;
-  double weight;
-};
+using reproject::Images;
+using reproject::Moved;
 
-// The taps of a pixel; none when there is no history.
-struct Taps {
-  static constexpr int kMost = 16;
-  int count = 0;
-  bool limited = false;  // catmull_rom, whose four taps in the middle come first
-  std::array<Tap, kMost> taps;
-
-  void add(std::ptrdiff_t offset, double weight) { taps[static_cast<std::size_t>(count++)] = {offset, weight}; }
-  void normalize() {
-    double total = 0;
-    for (const Tap& tap : all()) total += tap.weight;
-    const double scale = count > 0 ? 1 / total : 0;
-    for (int i = 0; i < count; ++i) taps[static_cast<std::size_t>(i)].weight *= scale;
-  }
-  std::span<const Tap> all() const { return {taps.data(), static_cast<std::size_t>(count)}; }
-};
-
-struct Job {
-  FloatImage motion;
-  IdImage id, previous_id;
-  FloatImage depth, previous_depth, depth_gradient, normal, previous_normal, normal_gradient, position, previous_position;
-  FloatOutput valid, rejected;
-  int width = 0, height = 0;  // of the history
-  std::ptrdiff_t row_stride = 0;
-};
-
-struct Vector {
-  float x = 0, y = 0, z = 0;
-};
-
-Vector at(const FloatImage& image, int x, int y) {
-  const float* first = image.row(y) + x;
-  return {first[0], first[image.plane_stride], first[2 * image.plane_stride]};
-}
-Vector minus(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-float dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-// What the taps of a pixel are tested by.
-struct Pixel {
-  std::uint32_t id = 0;
-  float depth = 0, depth_tolerance = 0, normal_tolerance = 0;
-  Vector normal{}, position{};
-};
-
-// A double that can be converted to int, and lies near enough to the screen to matter. False for NaN.
-bool is_near(double coordinate, int size) { return coordinate > -2.0 && coordinate < size + 1.0; }
-
-// Catmull and Rom's spline at the four pixels around a point that lies `f` behind the second.
-std::array<double, 4> catmull_rom(double f) {
-  return {f * (-0.5 + f * (1 - 0.5 * f)), 1 + f * f * (-2.5 + 1.5 * f), f * (0.5 + f * (2 - 1.5 * f)), f * f * (-0.5 + 0.5 * f)};
+reproject::Settings make_settings(const Params& p) {
+  return {.fetch = p.fetch,
+          .rescue = p.rescue == Rescue::window,
+          .min_weight = static_cast<float>(p.min_weight),
+          .depth_slope = static_cast<float>(p.depth_slope),
+          .depth_relative = static_cast<float>(p.depth_relative),
+          .depth_absolute = static_cast<float>(p.depth_absolute),
+          .normal_slope = static_cast<float>(p.normal_slope),
+          .normal_absolute = static_cast<float>(p.normal_absolute),
+          .plane_absolute = static_cast<float>(p.plane_absolute)};
 }
 
 class ReprojectPass final : public Pass {
  public:
-  explicit ReprojectPass(const Params& params) : params_(params) {}
+  explicit ReprojectPass(const Params& params) : settings_(make_settings(params)) {}
 
   void infer(Inference& inference) const override {
     for (std::size_t i = 0; i < inference.count("history"); ++i) inference.set_size("history", inference.size("motion"), i);
     for (const char* output : {"valid", "rejected"}) inference.set_size(output, inference.size("motion"));
     for (const char* input : {"history", "previous_id", "previous_depth", "previous_normal", "previous_position"})
       inference.set_unbounded(input);
-    inference.set_slot_scratch(kPixels * sizeof(Taps));
+    inference.set_slot_scratch(inference.count("history") * sizeof(Moved));
   }
 
   void run(const Frame& frame) const override {
-    const FloatImage motion = frame.image("motion");
-    Job job{motion,
-            frame.ids("id"),
-            frame.ids("previous_id"),
-            frame.image("depth"),
-            frame.image("previous_depth"),
-            frame.image("depth_gradient"),
-            frame.image("normal"),
-            frame.image("previous_normal"),
-            frame.image("normal_gradient"),
-            frame.image("position"),
-            frame.image("previous_position"),
-            frame.output("valid"),
-            frame.output("rejected")};
-    bool has_history = frame.count("history") > 0;
-    for (std::size_t i = 0; i < frame.count("history"); ++i) has_history = has_history && frame.has("history", i);
-    if (has_history) {
-      const FloatImage first = frame.image("history");
-      job.width = first.width, job.height = first.height, job.row_stride = first.row_stride;
-    }
-    frame.parallel_rows(job.valid.height, [&](int y0, int y1, std::uint32_t slot) {
-      Taps* taps = static_cast<Taps*>(frame.slot_scratch(slot));
-      for (int y = y0; y < y1; ++y)
-        for (int x = 0; x < job.valid.width; x += kPixels) {
-          const int end = std::min(x + kPixels, job.valid.width);
-          find_taps(job, has_history, x, end, y, taps);
-          for (std::size_t i = 0; i < frame.count("history"); ++i)
-            if (const FloatOutput out = frame.output("history", i))
-              fetch_pixels(taps, frame.image("history", i), job.row_stride, x, end, y, out);
-        }
+    const Images in{frame.image("motion"),           frame.ids("id"),
+                    frame.ids("previous_id"),        frame.image("depth"),
+                    frame.image("previous_depth"),   frame.image("depth_gradient"),
+                    frame.image("normal"),           frame.image("previous_normal"),
+                    frame.image("normal_gradient"),  frame.image("position"),
+                    frame.image("previous_position")};
+    const FloatOutput valid = frame.output("valid"), rejected = frame.output("rejected");
+    frame.parallel_rows(valid.height, [&](int y0, int y1, std::uint32_t slot) {
+      const std::span<const Moved> history = collect(frame, static_cast<Moved*>(frame.slot_scratch(slot)));
+      const bool has_history = !history.empty() && std::ranges::all_of(history, [](const Moved& image) { return !!image.from; });
+      for (int y = y0; y < y1; ++y) {
+        if (has_history)
+          reproject_row(in, settings_, history, y, valid, rejected);
+        else
+          reproject_nothing(history, y, valid, rejected);
+      }
     });
   }
 
  private:
-  static constexpr int kPixels = 64;  // whose taps are found before any is fetched; they fit the first cache
-
-  void find_taps(const Job& job, bool has_history, int x0, int x1, int y, Taps* taps) const {
-    for (int x = x0; x < x1; ++x, ++taps) {
-      taps->count = 0, taps->limited = false;
-      job.rejected.at(x, y) = has_history ? static_cast<float>(find_taps(job, x, y, *taps)) : 1.0F;
-      job.valid.at(x, y) = taps->count > 0 ? 1.0F : 0.0F;
-      taps->normalize();
-    }
+  static std::span<const Moved> collect(const Frame& frame, Moved* images) {
+    const std::size_t count = frame.count("history");
+    for (std::size_t i = 0; i < count; ++i)
+      std::construct_at(images + i, Moved{frame.image("history", i), frame.output("history", i)});
+    return {images, count};
   }
 
-  static void fetch_pixels(const Taps* taps, const FloatImage& history, std::ptrdiff_t row_stride, int x0, int x1, int y,
-                           const FloatOutput& out) {
-    const int count = x1 - x0;
-    for (int c = 0; c < out.channels; ++c) {
-      float* to = out.row(y, c) + x0;
-      if (!history) {
-        std::fill_n(to, count, 0.0F);
-      } else if (const float* plane = history.row(0, c); history.row_stride == row_stride) {
-        for (int i = 0; i < count; ++i) to[i] = fetch(taps[i], [=](std::ptrdiff_t offset) { return plane[offset]; });
-      } else {  // offsets were found for another stride
-        const std::ptrdiff_t own = history.row_stride;
-        for (int i = 0; i < count; ++i)
-          to[i] = fetch(taps[i], [=](std::ptrdiff_t offset) { return plane[offset / row_stride * own + offset % row_stride]; });
-      }
-    }
-  }
-
-  // In double, so that the mean of equal values is that value, bit for bit: weights add up to 1 but for some 1e-16.
-  template <class At>
-  static float fetch(const Taps& taps, const At& at) {
-    double sum = 0;
-    for (const Tap& tap : taps.all()) sum += tap.weight * double{at(tap.offset)};
-    const float value = static_cast<float>(sum);
-    if (!taps.limited) return value;
-    float lower = at(taps.taps[0].offset), upper = lower;
-    for (std::size_t i = 1; i < 4; ++i) {
-      lower = std::min(lower, at(taps.taps[i].offset));
-      upper = std::max(upper, at(taps.taps[i].offset));
-    }
-    return std::min(std::max(value, lower), upper);
-  }
-
-  Pixel pixel(const Job& job, int x, int y) const {
-    Pixel p;
-    if (job.id && job.previous_id) p.id = job.id.at(x, y);
-    if (job.depth && job.previous_depth) {
-      p.depth = job.depth.at(x, y);
-      const double gradient = job.depth_gradient ? job.depth_gradient.at(x, y) : 0;
-      p.depth_tolerance = static_cast<float>(params_.depth_slope * gradient + params_.depth_relative * std::abs(p.depth) +
-                                             params_.depth_absolute);
-    }
-    if (job.normal) p.normal = at(job.normal, x, y);
-    const double turn = job.normal_gradient ? job.normal_gradient.at(x, y) : 0;
-    p.normal_tolerance = static_cast<float>(params_.normal_slope * turn + params_.normal_absolute);
-    if (job.position) p.position = at(job.position, x, y);
-    return p;
-  }
-
-  // Written so that what is not a number fails.
-  bool passes(const Job& job, const Pixel& p, int tx, int ty) const {
-    if (tx < 0 || ty < 0 || tx >= job.width || ty >= job.height) return false;
-    if (job.id && job.previous_id && job.previous_id.at(tx, ty) != p.id) return false;
-    if (job.depth && job.previous_depth && !(std::abs(job.previous_depth.at(tx, ty) - p.depth) <= p.depth_tolerance))
-      return false;
-    if (job.normal && job.previous_normal) {
-      const Vector turn = minus(p.normal, at(job.previous_normal, tx, ty));
-      if (!(dot(turn, turn) <= p.normal_tolerance * p.normal_tolerance)) return false;
-    }
-    if (job.normal && job.position && job.previous_position) {
-      const float height = dot(p.normal, minus(p.position, at(job.previous_position, tx, ty)));
-      if (!(std::abs(height) <= params_.plane_absolute)) return false;
-    }
-    return true;
-  }
-
-  // Returns the share of the weights that failed.
-  double find_taps(const Job& job, int x, int y, Taps& taps) const {
-    if (job.id && job.id.at(x, y) == QUELL_NO_ID) return 1;
-    const double px = x + 0.5 + double{job.motion.at(x, y, 0)}, py = y + 0.5 + double{job.motion.at(x, y, 1)};
-    if (!is_near(px, job.width) || !is_near(py, job.height)) return 1;
-    const Pixel p = pixel(job, x, y);
-    double left = 0;
-    const auto take = [&](int tx, int ty, double weight) {
-      if (!(weight > 0) || !passes(job, p, tx, ty)) return;
-      taps.add(ty * job.row_stride + tx, weight);
-      left += weight;
-    };
-    const int near_x = static_cast<int>(std::floor(px)), near_y = static_cast<int>(std::floor(py));
-    if (params_.fetch == Fetch::truncate) {
-      take(static_cast<int>(px), static_cast<int>(py), 1);
-    } else if (params_.fetch == Fetch::nearest) {
-      take(near_x, near_y, 1);
-    } else {
-      const double floor_x = std::floor(px - 0.5), floor_y = std::floor(py - 0.5);
-      const double fx = px - 0.5 - floor_x, fy = py - 0.5 - floor_y;
-      const int x0 = static_cast<int>(floor_x), y0 = static_cast<int>(floor_y);
-      if (params_.fetch == Fetch::catmull_rom && take_catmull_rom(job, p, x0, y0, fx, fy, taps)) return 0;
-      take(x0, y0, (1 - fx) * (1 - fy));
-      take(x0 + 1, y0, fx * (1 - fy));
-      take(x0, y0 + 1, (1 - fx) * fy);
-      take(x0 + 1, y0 + 1, fx * fy);
-    }
-    const double rejected = std::min(std::max(1 - left, 0.0), 1.0);
-    if (left >= params_.min_weight && left > 0) return rejected;
-    taps.count = 0;
-    if (params_.rescue == Rescue::window)
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) take(near_x + dx, near_y + dy, 1);
-    return rejected;
-  }
-
-  // False, without taps, when one of the sixteen fails.
-  bool take_catmull_rom(const Job& job, const Pixel& p, int x0, int y0, double fx, double fy, Taps& taps) const {
-    const std::array<double, 4> wx = catmull_rom(fx), wy = catmull_rom(fy);
-    for (const bool middle : {true, false})
-      for (int j = 0; j < 4; ++j)
-        for (int i = 0; i < 4; ++i) {
-          if (((i == 1 || i == 2) && (j == 1 || j == 2)) != middle) continue;
-          if (!passes(job, p, x0 - 1 + i, y0 - 1 + j)) return taps.count = 0, false;
-          taps.add((y0 - 1 + j) * job.row_stride + x0 - 1 + i, wx[static_cast<std::size_t>(i)] * wy[static_cast<std::size_t>(j)]);
-        }
-    return taps.limited = true;
-  }
-
-  Params params_;
+  reproject::Settings settings_;
 };
 
 }  // namespace
