@@ -110,14 +110,15 @@ class BackProjectPass final : public Pass {
 
   void project_row(const Job& job, int y) const {
     float *out_x = job.motion.row(y, 0), *out_y = job.motion.row(y, 1);
+    const Surface::Pixels pixels = job.surface.row(y);
     WayBack previous = job.previous;
     for (int x = 0; x < job.motion.width; ++x) {
-      if (!job.surface.is_at(x, y)) {
+      if (!pixels.is_at(x)) {
         out_x[x] = out_y[x] = 0;
         continue;
       }
-      const Point point = job.surface.point(x, y);
-      const OnScreen before = project(previous.of(job.surface.id(x, y)), point);
+      const Point point = pixels.point(x);
+      const OnScreen before = project(previous.of(pixels.id(x)), point);
       OnScreen now{job.center[0] + x, job.center[1] + y, true};
       if (current_ == Current::projected) now = project(job.current, point);
       const double dx = before.x - now.x, dy = before.y - now.y;

@@ -139,17 +139,33 @@ class Surface {
       throw std::runtime_error("there must be 'position', or 'depth' to rebuild it from");
   }
 
-  // False where there is nothing to be seen.
-  bool is_at(int x, int y) const {
-    if (id_ && id_.at(x, y) == QUELL_NO_ID) return false;
-    return position_ || depth_.at(x, y) != QUELL_NO_SURFACE_DEPTH;
-  }
-  std::uint32_t id(int x, int y) const { return id_ ? id_.at(x, y) : QUELL_NO_ID; }
-  // That to_world() takes to the world.
-  Point point(int x, int y) const {
-    if (position_) return {position_.at(x, y, 0), position_.at(x, y, 1), position_.at(x, y, 2)};
-    const double depth = depth_.at(x, y), w = axis_.slope * depth + axis_.constant;
-    return {(x + 0.5) * w, (y + 0.5) * w, depth};
+  // One row of pixels. Its pointers are found once, and, a copy of its own, stay in registers whatever a loop writes.
+  class Pixels {
+   public:
+    // False where there is nothing to be seen.
+    bool is_at(int x) const { return !(ids_ && ids_[x] == QUELL_NO_ID) && (x_ || depth_[x] != QUELL_NO_SURFACE_DEPTH); }
+    std::uint32_t id(int x) const { return ids_ ? ids_[x] : QUELL_NO_ID; }
+    // That to_world() takes to the world.
+    Point point(int x) const {
+      if (x_) return {x_[x], y_[x], z_[x]};
+      const double depth = depth_[x], w = slope_ * depth + constant_;
+      return {(x + 0.5) * w, center_y_ * w, depth};
+    }
+
+   private:
+    friend class Surface;
+    const float *x_ = nullptr, *y_ = nullptr, *z_ = nullptr, *depth_ = nullptr;
+    const std::uint32_t* ids_ = nullptr;
+    double slope_ = 0, constant_ = 0, center_y_ = 0;
+  };
+
+  Pixels row(int y) const {
+    Pixels row;
+    if (position_) row.x_ = position_.row(y, 0), row.y_ = position_.row(y, 1), row.z_ = position_.row(y, 2);
+    if (depth_) row.depth_ = depth_.row(y);
+    if (id_) row.ids_ = id_.row(y);
+    row.slope_ = axis_.slope, row.constant_ = axis_.constant, row.center_y_ = y + 0.5;
+    return row;
   }
   const Matrix& to_world() const { return to_world_; }
 
@@ -174,14 +190,18 @@ class WayBack {
       : now_(&now), before_(&before), to_world_(to_world), then_(then), still_(then * to_world), last_(still_) {}
 
   const Matrix& of(std::uint32_t id) {
-    if (id == last_id_) return last_;
-    last_id_ = id;
-    const double *now = find_object(*now_, id), *before = find_object(*before_, id);
-    const bool moved = now && before && matrix(now) != matrix(before);
-    return last_ = moved ? then_ * (matrix(before) * inverse(matrix(now))) * to_world_ : still_;
+    if (id != last_id_) turn_to(id);
+    return last_;
   }
 
  private:
+  [[gnu::noinline]] void turn_to(std::uint32_t id) {  // not into the loop over pixels
+    last_id_ = id;
+    const double *now = find_object(*now_, id), *before = find_object(*before_, id);
+    const bool moved = now && before && matrix(now) != matrix(before);
+    last_ = moved ? then_ * (matrix(before) * inverse(matrix(now))) * to_world_ : still_;
+  }
+
   const quell_camera *now_, *before_;
   Matrix to_world_, then_, still_, last_;
   std::uint32_t last_id_ = QUELL_NO_ID;

@@ -78,12 +78,13 @@ class PreviousPositionPass final : public Pass {
   static void carry_row_back(const Job& job, int y) {
     float *out_x = job.position.row(y, 0), *out_y = job.position.row(y, 1), *out_z = job.position.row(y, 2);
     float* out_depth = job.depth.row(y);
+    const Surface::Pixels pixels = job.surface.row(y);
     WayBack previous = job.previous;
     for (int x = 0; x < job.position.width; ++x) {
       out_x[x] = out_y[x] = out_z[x] = 0;
       out_depth[x] = QUELL_NO_SURFACE_DEPTH;
-      if (!job.surface.is_at(x, y)) continue;
-      const Projected p = transform(previous.of(job.surface.id(x, y)), job.surface.point(x, y));
+      if (!pixels.is_at(x)) continue;
+      const Projected p = transform(previous.of(pixels.id(x)), pixels.point(x));
       const double px = p.x / p.w, py = p.y / p.w, pz = p.z / p.w;
       const double depth = job.axis[0] * px + job.axis[1] * py + job.axis[2] * pz + job.axis[3];
       if (!is_place(px) || !is_place(py) || !is_place(pz) || !is_place(depth)) continue;
