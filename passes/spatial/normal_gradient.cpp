@@ -14,19 +14,33 @@
 namespace quell {
 namespace {
 
-struct Params {};
+enum class Differences { smaller, central, quad };
+
+struct Params {
+  Differences differences = Differences::smaller;
+  void describe(auto&& field) {
+    field("differences", differences,
+          Choices{{"smaller", "the shorter of those to the two neighbors: an edge of the surface does not count"},
+                  {"central", "half of that from one neighbor to the other; where one does not count, that to the other"},
+                  {"quad",
+                   "that within the 2 x 2 pixels, from an even place on, that the pixel lies in: what ddx_fine and ddy_fine of a "
+                   "GPU give"}},
+          "Which differences are taken along each axis.");
+  }
+};
 
 const PassInfo kInfo{
     .id = "normal_gradient",
     .summary = "How much normals change from a pixel to its neighbors",
     .doc =
-        "gradient = the length of |dn/dx| + |dn/dy|, component by component. Along each axis it is the shorter of the "
+        "gradient = the length of |dn/dx| + |dn/dy|, component by component. By default it is, along each axis, the shorter of "
+        "the "
         "differences to "
         "the two neighbors; neighbors outside the image and without surface (normal 0) are left out. 0 where there is no "
         "surface.",
     .source =
         "Falcor's SVGFPass (the length of fwidth of the normal). Departs: one-sided differences instead of those within 2 x 2 "
-        "pixels.",
+        "pixels, which are a choice (HLSL's ddx_fine and ddy_fine).",
     .inputs = {{"normal", kNormal, "world-space normals"}},
     .outputs = {{"gradient", kScalar, "change of a unit vector a pixel"}}};
 
@@ -36,13 +50,15 @@ struct Vector {
 
 class NormalGradient final : public Pass {
  public:
-  explicit NormalGradient(const Params&) {}
+  explicit NormalGradient(const Params& params) : differences_(params.differences) {}
 
   void infer(Inference& inference) const override { inference.set_radius("normal", 1); }
 
   void run(const Frame& frame) const override {
     const FloatImage normal = frame.image("normal");
     const FloatOutput out = frame.output("gradient");
+    if (differences_ == Differences::central) return run_each(frame, normal, out, central_gradient);
+    if (differences_ == Differences::quad) return run_each(frame, normal, out, quad_gradient);
     frame.parallel_rows(out.height, [&](int y0, int y1) {
       for (int y = y0; y < y1; ++y) {
         const Neighbors vertical{normal, y > 0 ? y - 1 : y, y + 1 < normal.height ? y + 1 : y};
@@ -77,13 +93,45 @@ class NormalGradient final : public Pass {
             keep * std::abs(first ? to_a.z : to_b.z)};
   }
 
+  static float length_of_sum(Vector n, Vector dx, Vector dy) {
+    const Vector width{dx.x + dy.x, dx.y + dy.y, dx.z + dy.z};
+    return dot(n, n) > 0 ? std::sqrt(dot(width, width)) : 0.0F;
+  }
+
   static float gradient(const Neighbors& v, int y, int x, int left, int right) {
     const Vector n = at(v.normal, x, y);
     const Vector dx = change(n, at(v.normal, left, y), left != x, at(v.normal, right, y), right != x);
     const Vector dy = change(n, at(v.normal, x, v.above), v.above != y, at(v.normal, x, v.below), v.below != y);
-    const Vector width{dx.x + dy.x, dx.y + dy.y, dx.z + dy.z};
-    return dot(n, n) > 0 ? std::sqrt(dot(width, width)) : 0.0F;
+    return length_of_sum(n, dx, dy);
   }
+
+  template <class Gradient>
+  static void run_each(const Frame& frame, const FloatImage& normal, const FloatOutput& out, const Gradient& gradient_at) {
+    frame.parallel_rows(out.height, [&](int y0, int y1) {
+      for (int y = y0; y < y1; ++y)
+        for (int x = 0; x < out.width; ++x) out.at(x, y) = gradient_at(normal, x, y);
+    });
+  }
+
+  static Vector normal_at(const FloatImage& normal, int x, int y) { return normal.contains(x, y) ? at(normal, x, y) : Vector{}; }
+
+  static float central_gradient(const FloatImage& normal, int x, int y) {
+    const Vector n = at(normal, x, y);
+    const auto along = [&](Vector before, Vector after) {
+      if (!(dot(before, before) > 0) || !(dot(after, after) > 0)) return change(n, before, true, after, true);
+      return Vector{std::abs(after.x - before.x) / 2, std::abs(after.y - before.y) / 2, std::abs(after.z - before.z) / 2};
+    };
+    return length_of_sum(n, along(normal_at(normal, x - 1, y), normal_at(normal, x + 1, y)),
+                         along(normal_at(normal, x, y - 1), normal_at(normal, x, y + 1)));
+  }
+
+  static float quad_gradient(const FloatImage& normal, int x, int y) {
+    const Vector n = at(normal, x, y);
+    const auto along = [&](Vector partner) { return change(n, partner, true, n, false); };
+    return length_of_sum(n, along(normal_at(normal, x ^ 1, y)), along(normal_at(normal, x, y ^ 1)));
+  }
+
+  Differences differences_;
 };
 
 }  // namespace

@@ -1,27 +1,33 @@
 // Exponential average over time, the history first clamped to what its neighborhood in the new frame makes plausible.
 // Source:  GAMES202, homework 5: alpha C + (1 - alpha) clamp(history, mu - k sigma, mu + k sigma); the clamp to mean and
-//          deviation of a window is the variance clipping of Salvi, "An Excursion in Temporal Supersampling", GDC 2016.
+//          deviation of a window is the variance clipping of Salvi, "An Excursion in Temporal Supersampling", GDC 2016; that to
+//          its range, and in YCoCg, stands in Karis, "High-Quality Temporal Supersampling", SIGGRAPH 2014.
 // Departs: the homework takes the deviation about the center pixel and divides by the full window also at the border; both are
 //          choices here, and by default the deviation is about the mean and the divisor the number of pixels that exist. With a
 //          length the average begins as a plain mean, as in Falcor's SVGFPass.
-// Cost:    2 (2r + 1) multiply-adds for each of the two separable sums, a channel; no branch a tap.
+// Cost:    2 (2r + 1) multiply-adds for each of the two separable sums, a channel; no branch a tap. YCoCg needs a copy of the
+// frame.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "quell/sdk/pass.h"
 
 namespace quell {
 namespace {
 
-enum class Clamp { neighborhood, none };
+enum class Clamp { neighborhood, none, range };
+enum class Space { rgb, ycocg };
 enum class Spread { mean, center };
 enum class Count { existing, full };
 
 struct Params {
   double alpha = 0.2, max_length = 32;
   Clamp clamp = Clamp::neighborhood;
+  Space space = Space::rgb;
   int clamp_radius = 3;
   double clamp_k = 1.0;
   Spread spread = Spread::mean;
@@ -31,8 +37,14 @@ struct Params {
     field("max_length", max_length, Range<double>{1, 1e6}, "frames",
           "The history's length is counted up to this. With alpha 0 the average is the running mean of that many frames.");
     field("clamp", clamp,
-          Choices{{"neighborhood", "to mean +- clamp_k deviations of the window"}, {"none", "the history as it is"}},
+          Choices{{"neighborhood", "to mean +- clamp_k deviations of the window"},
+                  {"none", "the history as it is"},
+                  {"range", "from the smallest to the largest value in the window; clamp_k, spread and count do not matter"}},
           "What the history is limited to.");
+    field("space", space,
+          Choices{{"rgb", "red, green and blue"},
+                  {"ycocg", "luma and two differences of color, which limit hue and brightness apart: fewer colors pass"}},
+          "In which components of color the history is limited, each by itself.");
     field("clamp_radius", clamp_radius, Range<int>{0, 64}, "px", "The window has (2 clamp_radius + 1)^2 pixels.");
     field("clamp_k", clamp_k, Range<double>{0, 1e6}, "standard deviations", "Tolerated distance from the window's mean.");
     field("spread", spread,
@@ -57,11 +69,17 @@ const PassInfo kInfo{
         "With a length, alpha is max(alpha, 1 / n) with n = min(max_length, length + 1): young histories are plain means. With a "
         "confidence c in the history, alpha becomes 1 - c (1 - alpha), and the new length 1 + c (n - 1) instead of n. A history "
         "without a length counts as one of max_length frames; where there is none, the new length is 1.\n\n"
+        "In ycocg the history becomes Y = (R + 2 G + B) / 4, Co = (R - B) / 2, Cg = (2 G - R - B) / 4, is limited there by the "
+        "same "
+        "components of the window, and comes back as R = Y + Co - Cg, G = Y + Cg, B = Y - Co - Cg, which may lie a little below "
+        "0 "
+        "where dark colors were limited.\n\n"
         "The window's sums are taken in double: squares of floats are exact there, and the error of a 7x7 window's deviation "
         "is below 1e-7 of the largest value in it.",
     .source =
         "GAMES202, homework 5 (accumulation, equations for mu, sigma and the clamp). Salvi, \"An Excursion in Temporal "
-        "Supersampling\", GDC 2016. Alpha by length: Falcor's SVGFPass.",
+        "Supersampling\", GDC 2016. Range, and YCoCg: Karis, \"High-Quality Temporal Supersampling\", SIGGRAPH 2014, course. "
+        "Alpha by length: Falcor's SVGFPass.",
     .inputs = {{"color", kColor, "the new frame"},
                {"history", kColor, "the average so far, at this frame's pixels", true},
                {"valid", kMask, "where the history can be used; without it, everywhere", true},
@@ -73,6 +91,22 @@ const PassInfo kInfo{
 struct Job {
   FloatImage color, history, valid, length, confidence;
   FloatOutput out, new_length;
+  FloatImage window;  // what the history is limited by: the color, or that in YCoCg
+};
+
+// Malvar and Sullivan, "YCoCg-R: A Color Space with RGB Reversibility and Low Dynamic Range", JVT-I014r3, 2003.
+std::array<double, 3> ycocg_from_rgb(double r, double g, double b) {
+  return {0.25 * r + 0.5 * g + 0.25 * b, 0.5 * r - 0.5 * b, 0.5 * g - 0.25 * r - 0.25 * b};
+}
+std::array<double, 3> rgb_from_ycocg(double y, double co, double cg) { return {y + co - cg, y + cg, y - co - cg}; }
+
+// Elements of a row of an image in scratch memory, on cache lines, with a line more that may be read.
+std::ptrdiff_t scratch_stride(int width) { return (std::ptrdiff_t{width} + 15) / 16 * 16 + 16; }
+
+// Limits of each pixel of a row.
+struct Limits {
+  double *lower, *upper;
+  double apply(int x, double value) const { return std::min(std::max(value, lower[x]), upper[x]); }
 };
 
 // Sums over the window's column, for each pixel of a row; `radius` zeros stand on both sides, so that a sum along the row needs
@@ -97,6 +131,25 @@ void sum_columns(const FloatImage& image, int c, int y, int radius, const Column
   }
 }
 
+// The smallest and largest value of the window, as the sums are found: columns first.
+void find_range(const FloatImage& image, int c, int y, int radius, const ColumnSums& columns, const Limits& limits) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const int width = image.width;
+  std::fill_n(columns.first, width + 2 * radius, kInfinity);
+  std::fill_n(columns.second, width + 2 * radius, -kInfinity);
+  const auto widen = [width](const auto* low, const auto* high, double* __restrict lower, double* __restrict upper) {
+    for (int x = 0; x < width; ++x) {
+      lower[x] = std::min(lower[x], double{low[x]});
+      upper[x] = std::max(upper[x], double{high[x]});
+    }
+  };
+  for (int ty = std::max(y - radius, 0); ty <= std::min(y + radius, image.height - 1); ++ty)
+    widen(image.row(ty, c), image.row(ty, c), columns.first + radius, columns.second + radius);
+  std::fill_n(limits.lower, width, kInfinity);
+  std::fill_n(limits.upper, width, -kInfinity);
+  for (int dx = 0; dx <= 2 * radius; ++dx) widen(columns.first + dx, columns.second + dx, limits.lower, limits.upper);
+}
+
 // Pixels of [at - radius, at + radius] that lie in [0, size).
 int existing(int at, int radius, int size) { return std::min(at + radius, size - 1) - std::max(at - radius, 0) + 1; }
 
@@ -111,12 +164,24 @@ class TemporalBlendPass final : public Pass {
     inference.set_slot_scratch(width * sizeof(double));
     if (params_.clamp == Clamp::none) return;
     inference.set_radius("color", params_.clamp_radius);
-    inference.set_slot_scratch((width + 4 * padded(inference.size("color").width)) * sizeof(double));
+    const std::size_t channels = params_.space == Space::ycocg ? 3 : 1;  // whose limits are needed at a time
+    inference.set_slot_scratch((width + (2 + 2 * channels) * padded(inference.size("color").width)) * sizeof(double));
+    if (params_.space == Space::ycocg)
+      inference.set_scratch(3 * static_cast<std::size_t>(scratch_stride(inference.size("color").width)) *
+                            static_cast<std::size_t>(inference.size("color").height) * sizeof(float));
   }
 
   void run(const Frame& frame) const override {
-    const Job job{frame.image("color"),      frame.image("history"), frame.image("valid"),  frame.image("length"),
-                  frame.image("confidence"), frame.output("color"),  frame.output("length")};
+    const FloatImage color = frame.image("color"), history = frame.image("history");
+    const bool is_converted = history && params_.clamp != Clamp::none && params_.space == Space::ycocg;
+    const Job job{color,
+                  history,
+                  frame.image("valid"),
+                  frame.image("length"),
+                  frame.image("confidence"),
+                  frame.output("color"),
+                  frame.output("length"),
+                  is_converted ? convert(frame, color) : color};
     frame.parallel_rows(job.out.height, [&](int y0, int y1, std::uint32_t slot) {
       for (int y = y0; y < y1; ++y) {
         if (job.history)
@@ -138,9 +203,24 @@ class TemporalBlendPass final : public Pass {
     std::fill_n(job.new_length.row(y), job.out.width, 1.0F);
   }
 
+  static FloatImage convert(const Frame& frame, const FloatImage& color) {
+    const std::ptrdiff_t stride = scratch_stride(color.width);
+    const FloatOutput out{color.width, color.height, 3, stride, stride * color.height, static_cast<float*>(frame.scratch())};
+    frame.parallel_rows(color.height, [&](int y0, int y1) {
+      for (int y = y0; y < y1; ++y)
+        for (int x = 0; x < color.width; ++x) {
+          const std::array<double, 3> converted = ycocg_from_rgb(color.at(x, y, 0), color.at(x, y, 1), color.at(x, y, 2));
+          for (int c = 0; c < 3; ++c) out.at(x, y, c) = static_cast<float>(converted[static_cast<std::size_t>(c)]);
+        }
+    });
+    return out;
+  }
+
   void blend_rows(const Job& job, int y, double* scratch) const {
     double* alphas = scratch;
     find_alphas(job, y, alphas);
+    if (params_.clamp != Clamp::none && params_.space == Space::ycocg)
+      return blend_ycocg_row(job, y, alphas, scratch + job.out.width);
     for (int c = 0; c < job.out.channels; ++c) {
       if (params_.clamp == Clamp::none)
         blend_row(job, y, c, alphas, [](int, double history) { return history; });
@@ -182,19 +262,46 @@ class TemporalBlendPass final : public Pass {
   }
 
   void blend_clamped_row(const Job& job, int y, int c, const double* alphas, double* scratch) const {
-    const int width = job.out.width, radius = params_.clamp_radius;
-    const std::size_t stride = padded(width);
-    const ColumnSums sums{scratch, scratch + stride};
-    double *lower = scratch + 2 * stride, *upper = scratch + 3 * stride;
-    sum_columns(job.color, c, y, radius, sums);
-    find_limits(job, y, c, sums, lower, upper);
-    blend_row(job, y, c, alphas, [=](int x, double history) { return std::min(std::max(history, lower[x]), upper[x]); });
+    const std::size_t stride = padded(job.out.width);
+    const Limits limits{scratch + 2 * stride, scratch + 3 * stride};
+    find_limits(job, y, c, scratch, limits);
+    blend_row(job, y, c, alphas, [=](int x, double history) { return limits.apply(x, history); });
+  }
+
+  // As blend_row, of all channels at once: the output may lie on the history.
+  void blend_ycocg_row(const Job& job, int y, const double* alphas, double* scratch) const {
+    std::array<Limits, 3> limits{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      double* own = scratch + (2 + 2 * c) * padded(job.out.width);
+      limits[c] = {own, own + padded(job.out.width)};
+      find_limits(job, y, static_cast<int>(c), scratch, limits[c]);
+    }
+    for (int x = 0; x < job.out.width; ++x) {
+      const std::array<double, 3> history =
+          ycocg_from_rgb(job.history.at(x, y, 0), job.history.at(x, y, 1), job.history.at(x, y, 2));
+      const std::array<double, 3> limited =
+          rgb_from_ycocg(limits[0].apply(x, history[0]), limits[1].apply(x, history[1]), limits[2].apply(x, history[2]));
+      const bool is_valid = !job.valid || job.valid.at(x, y) > 0.5F;
+      for (int c = 0; c < 3; ++c) {
+        const float color = job.color.at(x, y, c);
+        const double mixed = alphas[x] * color + (1 - alphas[x]) * limited[static_cast<std::size_t>(c)];
+        job.out.at(x, y, c) = is_valid ? static_cast<float>(mixed) : color;
+      }
+    }
+  }
+
+  // `scratch` holds two padded rows.
+  void find_limits(const Job& job, int y, int c, double* scratch, const Limits& limits) const {
+    const ColumnSums columns{scratch, scratch + padded(job.out.width)};
+    if (params_.clamp == Clamp::range) return find_range(job.window, c, y, params_.clamp_radius, columns, limits);
+    sum_columns(job.window, c, y, params_.clamp_radius, columns);
+    find_limits(job, y, c, columns, limits.lower, limits.upper);
   }
 
   void find_limits(const Job& job, int y, int c, const ColumnSums& sums, double* __restrict lower,
                    double* __restrict upper) const {
     const int width = job.out.width, radius = params_.clamp_radius;
-    const float* __restrict color = job.color.row(y, c);
+    const float* __restrict color = job.window.row(y, c);
     // Along the row: all first sums, then all second ones, tap by tap, so that the inner loops are plain additions.
     std::fill_n(lower, width, 0.0);
     std::fill_n(upper, width, 0.0);

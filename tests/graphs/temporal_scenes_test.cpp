@@ -20,6 +20,7 @@ constexpr int kFrames = 6;       // from 1 on
 struct Pixel {
   int x = 0, y = 0;
 };
+constexpr Pixel kFirefly{5, 3};
 constexpr Pixel operator+(Pixel a, Pixel b) { return {a.x + b.x, a.y + b.y}; }
 
 // What is seen in a pixel: an object, and where its point was one frame ago, relative to the pixel.
@@ -31,6 +32,7 @@ struct Seen {
 struct Scene {
   std::function<Seen(Pixel, std::int64_t frame)> see;
   std::set<std::int64_t> cuts = {};                                        // where history has to end
+  std::set<std::int64_t> fireflies = {};                                   // frames in which kFirefly is far too bright
   std::function<Camera(std::int64_t frame)> camera = {};                   // for graphs that find the motion themselves
   std::function<std::array<float, 3>(Pixel, std::int64_t)> position = {};  // the same
 };
@@ -44,9 +46,14 @@ bool has_history(const Scene& scene, Pixel at, std::int64_t frame) {
   const Pixel before = at + seen.motion;
   return frame > 1 && !scene.cuts.contains(frame) && is_inside(before) && scene.see(before, frame - 1).id == seen.id;
 }
-double expected(const Scene& scene, Pixel at, std::int64_t frame) {
-  if (!has_history(scene, at, frame)) return color(at, frame);
-  return kAlpha * color(at, frame) + (1 - kAlpha) * expected(scene, at + scene.see(at, frame).motion, frame - 1);
+bool is_firefly(const Scene& scene, Pixel at, std::int64_t frame) {
+  return at.x == kFirefly.x && at.y == kFirefly.y && scene.fireflies.contains(frame);
+}
+// Plane c. What is too bright counts as black.
+double expected(const Scene& scene, Pixel at, std::int64_t frame, int c) {
+  const double now = is_firefly(scene, at, frame) ? 0 : double{color(at, frame)} + c;
+  if (!has_history(scene, at, frame)) return now;
+  return kAlpha * now + (1 - kAlpha) * expected(scene, at + scene.see(at, frame).motion, frame - 1, c);
 }
 
 class SceneSource final : public FrameSource {
@@ -76,7 +83,7 @@ class SceneSource final : public FrameSource {
 
  private:
   float number(PortType type, Pixel at, std::int64_t frame, int c) const {
-    if (type == QUELL_TYPE_COLOR) return color(at, frame) + static_cast<float>(c);
+    if (type == QUELL_TYPE_COLOR) return is_firefly(scene_, at, frame) ? 1e6F : color(at, frame) + static_cast<float>(c);
     if (type == QUELL_TYPE_POSITION) return scene_.position(at, frame)[static_cast<std::size_t>(c)];
     const Pixel motion = scene_.see(at, frame).motion;
     return static_cast<float>(c == 0 ? motion.x : motion.y);
@@ -105,11 +112,15 @@ const std::string kReproject = R"(
       "history": [{ "from": "blend.color", "delay": 1, "initial": "none" }], "motion": "MOTION",
       "id": "id", "previous_id": { "from": "id", "delay": 1, "initial": "none" } } },
     "blend": { "pass": "temporal_blend",
-      "in": { "color": "color", "history": "reproject.history[0]", "valid": "reproject.valid" },
+      "in": { "color": "COLOR", "history": "reproject.history[0]", "valid": "reproject.valid" },
       "params": { "alpha": 0.25, "clamp": "none" } } },
   "outputs": { "color": "blend.color" })";
 
-std::string reproject(const std::string& motion) { return std::string(kReproject).replace(kReproject.find("MOTION"), 6, motion); }
+std::string reproject(const std::string& motion, const std::string& color = "color") {
+  std::string text = kReproject;
+  text.replace(text.find("MOTION"), 6, motion);
+  return text.replace(text.find("COLOR"), 5, color);
+}
 
 // Motion comes with the frames.
 const std::string kGiven =
@@ -118,6 +129,11 @@ const std::string kGiven =
 const std::string kGivenWithCut =
     R"({ "quell": 1, "inputs": { "color": "color", "motion": "motion", "id": "id", "cut": "value" }, "reset": "cut", "nodes": {)" +
     reproject("motion") + "}";
+// Fireflies are taken out, and a frame that has one begins anew.
+const std::string kGuarded = R"({ "quell": 1, "inputs": { "color": "color", "motion": "motion", "id": "id" },
+  "reset": "guard.count",
+  "nodes": { "guard": { "pass": "sanitize", "in": { "color": "color" }, "params": { "max": 1000 } },)" +
+                             reproject("motion", "guard.color") + "}";
 // Motion is found from positions and matrices.
 const std::string kFound = R"({ "quell": 1,
   "inputs": { "color": "color", "position": "position", "id": "id", "camera": "camera" },
@@ -167,7 +183,7 @@ void expect_exact(const std::string& text, const Scene& scene, std::vector<std::
     for (const std::int64_t frame : frames)
       SceneSource::for_each([&](Pixel at) {
         for (int c = 0; c < 3; ++c)
-          EXPECT_EQ(sink.at("color", frame, at, c), static_cast<float>(expected(scene, at, frame)) + static_cast<float>(c))
+          EXPECT_EQ(sink.at("color", frame, at, c), static_cast<float>(expected(scene, at, frame, c)))
               << "frame " << frame << ", pixel " << at.x << ", " << at.y << ", plane " << c;
       });
     if (testing::Test::HasFailure()) return;
@@ -244,7 +260,7 @@ TEST(TemporalScenes, AStaticSceneHasTheGeometricMeanOfItsFrames) {
   EXPECT_EQ(count_new(scene, 2), 0);
   double sum = color({4, 3}, 1);
   for (int frame = 2; frame <= kFrames; ++frame) sum = sum * 0.75 + 0.25 * color({4, 3}, frame);
-  EXPECT_EQ(expected(scene, {4, 3}, kFrames), sum);
+  EXPECT_EQ(expected(scene, {4, 3}, kFrames, 0), sum);
   expect_exact(kGiven, scene);
   expect_means(scene);
 }
@@ -317,6 +333,13 @@ TEST(TemporalScenes, NothingLastsBeyondTheFrameWhoseNumberSaysSo) {
   expect_means(scene);
   const Scene uncut{see_moving_object};
   expect_exact(kGivenWithCut, uncut);
+}
+
+TEST(TemporalScenes, NothingLastsBeyondAFrameInWhichPixelsHadToBeReplaced) {
+  const Scene scene{.see = see_moving_object, .cuts = {3, 5}, .fireflies = {3, 5}};
+  expect_exact(kGuarded, scene);
+  const Scene clean{see_moving_object};
+  expect_exact(kGuarded, clean);
 }
 
 }  // namespace

@@ -77,7 +77,57 @@ TEST(NormalGradient, IsTheLengthOfBothChanges) {
     }
 }
 
+// Normals that face anywhere, with holes.
+bool counts(int x, int y) { return x >= 0 && y >= 0 && x < kSize.width && y < kSize.height && (x / 3 + y / 2) % 4 != 3; }
+float holed_normal(int x, int y, int c) {
+  if (!counts(x, y)) return 0;
+  const double a = std::fmod(x * x * 7.31 + y * 13.17, 29), b = std::fmod(x * 5.77 + y * y * 3.41, 23);
+  const Vec n{std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b)};
+  return static_cast<float>(n[static_cast<std::size_t>(c)]);
+}
+// Of one component, without sign.
+double difference(int ax, int ay, int bx, int by, int c) {
+  return counts(ax, ay) && counts(bx, by) ? std::abs(double{holed_normal(ax, ay, c)} - holed_normal(bx, by, c)) : 0;
+}
+// Along the axis (dx, dy).
+double central(int x, int y, int dx, int dy, int c) {
+  if (counts(x - dx, y - dy) && counts(x + dx, y + dy)) return difference(x - dx, y - dy, x + dx, y + dy, c) / 2;
+  return difference(x, y, x - dx, y - dy, c) + difference(x, y, x + dx, y + dy, c);  // one of which is 0
+}
+double quad(int x, int y, int dx, int dy, int c) {
+  const int side = (dx * x + dy * y) % 2 == 0 ? 1 : -1;
+  return difference(x, y, x + side * dx, y + side * dy, c);
+}
+
+void expect_length_of_both_axes(const char* differences, double (*along)(int, int, int, int, int)) {
+  PassTest pass("normal_gradient");
+  pass.set("differences", differences);
+  const FloatImage out = gradient_of(pass, holed_normal);
+  for (int y = 0; y < kSize.height; ++y)
+    for (int x = 0; x < kSize.width; ++x) {
+      double squares = 0;
+      for (int c = 0; c < 3; ++c) squares += std::pow(along(x, y, 1, 0, c) + along(x, y, 0, 1, c), 2);
+      ASSERT_NEAR(out.at(x, y), counts(x, y) ? std::sqrt(squares) : 0, 1e-6) << differences << " at " << x << "," << y;
+    }
+}
+TEST(NormalGradient, TakesCentralDifferences) { expect_length_of_both_axes("central", central); }
+TEST(NormalGradient, TakesDifferencesWithinQuads) { expect_length_of_both_axes("quad", quad); }
+
+// A right angle between columns 20 and 21, within a quad.
+TEST(NormalGradient, SeesAnEdgeWhereItsDifferencesCrossIt) {
+  const double root2 = std::sqrt(2.0);
+  for (const auto& [differences, want] : {std::pair{"central", root2 / 2}, std::pair{"quad", root2}}) {
+    PassTest pass("normal_gradient");
+    pass.set("differences", differences);
+    const FloatImage out = gradient_of(pass, [](int x, int, int c) { return c == (x < 21 ? 0 : 1) ? 1.0F : 0.0F; });
+    for (int x = 0; x < kSize.width; ++x)
+      EXPECT_FLOAT_EQ(out.at(x, 5), x == 20 || x == 21 ? static_cast<float>(want) : 0.0F) << x;
+  }
+}
+
 }  // namespace
 }  // namespace quell
 
 QUELL_CONFORMANCE_TEST(normal_gradient);
+QUELL_CONFORMANCE_TEST(normal_gradient, .set("differences", "central"));
+QUELL_CONFORMANCE_TEST(normal_gradient, .set("differences", "quad"));

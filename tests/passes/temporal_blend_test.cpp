@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -303,7 +304,120 @@ TEST_P(EveryVariant, AgreesWithTheDoubleReference) {
     }
 }
 
+// The same in either space, with either limit, in double: components of Karis' transform, the window's limits, and back.
+using Color = std::array<double, 3>;
+
+Color to_space(bool ycocg, const FloatImage& image, int x, int y) {
+  const double r = image.at(x, y, 0), g = image.at(x, y, 1), b = image.at(x, y, 2);
+  return ycocg ? Color{(r + 2 * g + b) / 4, (r - b) / 2, (2 * g - r - b) / 4} : Color{r, g, b};
+}
+Color from_space(bool ycocg, const Color& v) { return ycocg ? Color{v[0] + v[1] - v[2], v[0] + v[2], v[0] - v[1] - v[2]} : v; }
+
+Color limited(const FloatImage& color, const FloatImage& history, int x, int y, int radius, bool ycocg, bool range, double k) {
+  Color result{};
+  const Color before = to_space(ycocg, history, x, y);
+  for (std::size_t c = 0; c < 3; ++c) {
+    double count = 0, sum = 0, squares = 0, low = std::numeric_limits<double>::infinity(), high = -low;
+    const auto each = [&](const auto& body) {
+      for (int ty = y - radius; ty <= y + radius; ++ty)
+        for (int tx = x - radius; tx <= x + radius; ++tx)
+          if (color.contains(tx, ty)) body(to_space(ycocg, color, tx, ty)[c]);
+    };
+    each([&](double v) { count += 1, sum += v, low = std::min(low, v), high = std::max(high, v); });
+    const double mean = sum / count;
+    each([&](double v) { squares += (v - mean) * (v - mean); });
+    const double reach = k * std::sqrt(squares / count);
+    result[c] = range ? std::clamp(before[c], low, high) : std::clamp(before[c], mean - reach, mean + reach);
+  }
+  return from_space(ycocg, result);
+}
+
+class EveryLimit : public testing::TestWithParam<std::tuple<bool, bool, int>> {};
+INSTANTIATE_TEST_SUITE_P(TemporalBlend, EveryLimit, testing::Combine(testing::Bool(), testing::Bool(), testing::Values(0, 1, 3)),
+                         [](const auto& test) {
+                           return std::string(std::get<0>(test.param) ? "Ycocg" : "Rgb") +
+                                  (std::get<1>(test.param) ? "Range" : "Deviations") + std::to_string(std::get<2>(test.param));
+                         });
+
+TEST_P(EveryLimit, AgreesWithTheDoubleReference) {
+  const auto [ycocg, range, radius] = GetParam();
+  std::mt19937 random(7);
+  std::lognormal_distribution<float> radiance(0, 2);
+  const double k = 1.5, alpha = 0.125;
+  for (const Size size : {Size{1, 1}, Size{1, 9}, Size{15, 2}, kSize}) {
+    const auto draw = [&](int, int, int) { return radiance(random); };
+    const Image color = test_image(QUELL_TYPE_COLOR, size, draw), history = test_image(QUELL_TYPE_COLOR, size, draw);
+    PassTest pass("temporal_blend");
+    pass.set("alpha", alpha).set("clamp_k", k).set("clamp_radius", radius);
+    pass.set("clamp", range ? "range" : "neighborhood").set("space", ycocg ? "ycocg" : "rgb");
+    pass.input("color", color).input("history", history);
+    pass.input("valid", test_image(QUELL_TYPE_MASK, size, [](int x, int y, int) { return (x + y) % 5 == 4 ? 0.0F : 1.0F; }));
+    pass.run();
+    float largest = 0;
+    for (int c = 0; c < 3; ++c)
+      for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) largest = std::max(largest, color.floats().at(x, y, c));
+    // Deviations: see above. The window's components in YCoCg are floats, 6e-8 L off, as then are its limits, deviations k times
+    // that; three of them come back as one channel.
+    const double limit = (range ? 0 : k * 1e-7) + (ycocg ? 6e-8 * (range ? 1 : 1 + k) : 0);
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) {
+        const Color before = limited(color.floats(), history.floats(), x, y, radius, ycocg, range, k);
+        for (int c = 0; c < 3; ++c) {
+          const double now = color.floats().at(x, y, c), mixed = alpha * now + (1 - alpha) * before[static_cast<std::size_t>(c)];
+          const double want = (x + y) % 5 == 4 ? now : mixed;
+          ASSERT_NEAR(pass.output("color").at(x, y, c), want, (ycocg ? 3 : 1) * limit * largest + 6e-8 * std::abs(want))
+              << x << "," << y << "," << c;
+        }
+      }
+  }
+}
+
+TEST(TemporalBlend, KeepsWhatLiesInTheRangeAndNothingElse) {
+  // Values of the window: 0, 1 and one 9, in every 3 x 3 pixels that hold the center.
+  const Image color = test_image(QUELL_TYPE_COLOR, {9, 9},
+                                 [](int x, int y, int) { return x == 4 && y == 4 ? 9.0F : static_cast<float>((x + y) % 2); });
+  const auto limited_to = [&](float history, int x) {
+    PassTest pass("temporal_blend");
+    pass.set("alpha", 0.0).set("clamp", "range").set("clamp_radius", 1);
+    pass.input("color", color).input("history", constant(history, {9, 9}));
+    pass.run();
+    return pass.output("color").at(x, 4);
+  };
+  EXPECT_EQ(limited_to(5, 5), 5.0F) << "far beyond the deviations, within the range";
+  EXPECT_EQ(limited_to(5, 6), 1.0F) << "the 9 is out of reach";
+  EXPECT_EQ(limited_to(100, 4), 9.0F);
+  EXPECT_EQ(limited_to(-3, 4), 0.0F);
+}
+
+TEST(TemporalBlend, TellsHuesApartInYcocgThatTheirChannelsDoNot) {
+  // Grays from 0 to 1 permit each channel all of it, hence red; of differences of color they have none.
+  const Image grays = test_image(QUELL_TYPE_COLOR, kSize, [](int x, int, int) { return static_cast<float>(x % 2); });
+  const Image red = test_image(QUELL_TYPE_COLOR, kSize, [](int, int, int c) { return c == 0 ? 1.0F : 0.0F; });
+  for (const bool ycocg : {false, true}) {
+    PassTest pass("temporal_blend");
+    pass.set("alpha", 0.0).set("clamp", "range").set("space", ycocg ? "ycocg" : "rgb");
+    pass.input("color", grays).input("history", red);
+    pass.run();
+    for (int c = 0; c < 3; ++c)
+      EXPECT_EQ(pass.output("color").at(9, 9, c), ycocg ? 0.25F : c == 0 ? 1.0F : 0.0F) << "the luma of red, as gray";
+  }
+}
+
+TEST(TemporalBlend, DoesWithoutTheSpaceWhereNothingIsLimited) {
+  for (const char* space : {"rgb", "ycocg"}) {
+    PassTest pass("temporal_blend");
+    pass.set("alpha", 0.25).set("clamp", "none").set("space", space).input("color", constant(1)).input("history", constant(5));
+    pass.run();
+    EXPECT_EQ(pass.output("color").at(7, 7), 4.0F);
+    EXPECT_EQ(pass.radius("color"), 0);
+  }
+}
+
 QUELL_CONFORMANCE_TEST(temporal_blend)
+QUELL_CONFORMANCE_TEST(temporal_blend, .set("clamp", "range"))
+QUELL_CONFORMANCE_TEST(temporal_blend, .set("space", "ycocg"))
+QUELL_CONFORMANCE_TEST(temporal_blend, .set("clamp", "range").set("space", "ycocg").set("clamp_radius", 1))
 QUELL_CONFORMANCE_TEST(temporal_blend, .set("clamp", "none"))
 QUELL_CONFORMANCE_TEST(temporal_blend, .set("spread", "center").set("count", "full").set("clamp_radius", 1))
 
