@@ -6,7 +6,6 @@
 #include <atomic>
 #include <utility>
 
-#include "quell/runtime/flush_to_zero.h"
 #include "quell/runtime/workers.h"
 
 namespace quell {
@@ -44,7 +43,6 @@ void Executor::run(std::int64_t chunks, Chunk body) {
   const auto share = [&](std::uint32_t slot) {
     const bool helps = slot > 0;
     if (helps && (next.load(std::memory_order_relaxed) >= chunks || !budget_.try_take())) return;
-    const FlushToZero flush;
     const Place outer = std::exchange(place, {this, slot});
     while (!(helps && budget_.is_wanted())) {
       // Relaxed: chunks owe each other nothing, and a race detector would take more for an order between them.

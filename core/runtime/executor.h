@@ -33,7 +33,7 @@ class Executor {
 
   /// Calls body(chunk, slot) once for every chunk in [0, chunks), and returns when all are done. The caller takes part, helped by
   /// workers for which the budget has room. A call from within a body of this executor runs inline, with the caller's slot.
-  /// `body` must not throw. In it floats below 1.2e-38 count as 0 (flush_to_zero.h).
+  /// `body` must not throw.
   void run(std::int64_t chunks, Chunk body);
   /// Runs the task once, on a worker, some time; it must live until then. It may run loops. The budget is the caller's affair.
   void spawn(FunctionRef<void()> task);

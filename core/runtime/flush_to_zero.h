@@ -10,7 +10,8 @@
 namespace quell {
 
 /// While it lives, floats below 1.2e-38 (those with less than all digits) count as 0 on this thread. Weights of filters get that
-/// small, and a processor may take 150 cycles for an operation on one: a filter then takes three times as long.
+/// small, and a processor may take 150 cycles for an operation on one: a filter then takes three times as long. For the
+/// loops of passes only: readers of half floats may go by numbers of that size.
 class FlushToZero {
  public:
 #if defined(__SSE2__)

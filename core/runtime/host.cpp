@@ -5,6 +5,8 @@
 #include <thread>
 #include <utility>
 
+#include "quell/runtime/flush_to_zero.h"
+
 namespace quell {
 
 Host::Host(const HostServices& services, std::string name) : services_(services), name_(std::move(name)), raw_{} {
@@ -55,6 +57,7 @@ quell_status Host::parallel_for(const quell_host* host, std::int64_t begin, std:
     quell_status result = QUELL_FAILED;
     try {
       if (own.ask_cancelled()) return;
+      const FlushToZero flush;
       result = fn(context, chunk, from, std::min(from + grain, end), slot);
     } catch (...) {  // a plugin that breaks the rule must not take the workers down
       host->set_error(host, "an exception left a chunk of a parallel loop");

@@ -34,7 +34,7 @@ const std::map<std::string, Names, std::less<>> kThirdParty = {
     {"OpenColorIO", {"passes"}},  {"hwy", {"passes", "core/metrics", "core/simd"}},
     {"spdlog", {"apps"}},         {"CLI", {"apps"}},
     {"xxhash.h", {"core/graph"}}, {"gtest", {"core/testing"}},
-    {"gmock", {"core/testing"}},
+    {"gmock", {"core/testing"}},  {"xmmintrin.h", {"core/runtime"}},
 };
 
 // The operating system's headers. The SDK and the passes do without.

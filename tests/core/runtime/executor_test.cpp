@@ -56,18 +56,6 @@ TEST_P(ExecutorOf, RunsInParallelAgainAfterANestedLoop) {
   EXPECT_EQ(count, 11);
 }
 
-// Only x86 and ARM can; elsewhere what is tiny is merely slow.
-#if defined(__SSE2__) || defined(__aarch64__)
-TEST_P(ExecutorOf, CountsWhatIsTinyAsNothingInBodiesAlone) {
-  const auto executor = make_executor(2, GetParam());
-  volatile float small = 1e-30F;
-  std::atomic<int> tiny = 0;
-  executor->run(64, [&](std::int64_t, std::uint32_t) { tiny += small * 1e-10F != 0 ? 1 : 0; });
-  EXPECT_EQ(tiny, 0);
-  EXPECT_NE(small * 1e-10F, 0);
-}
-#endif
-
 TEST_P(ExecutorOf, DoesNothingForNoChunks) {
   make_executor(2, GetParam())->run(0, [](std::int64_t, std::uint32_t) { FAIL(); });
 }
