@@ -82,13 +82,14 @@ class Sanitize final : public Pass {
   }
 
  private:
+  bool fits(float value) const { return value <= max_ && value >= -kLargest; }  // false for NaN
+
   // 1 for each pixel of the row that is to be replaced, else 0; and how many there are.
   std::int64_t find_bad(const FloatImage& in, int y, std::int32_t* __restrict bad) const {
-    const float max = max_;
     for (int x = 0; x < in.width; ++x) bad[x] = 0;
     for (int c = 0; c < in.channels; ++c) {
       const float* row = in.row(y, c);
-      for (int x = 0; x < in.width; ++x) bad[x] |= row[x] <= max && row[x] >= -kLargest ? 0 : 1;  // NaN is neither
+      for (int x = 0; x < in.width; ++x) bad[x] |= fits(row[x]) ? 0 : 1;
     }
     std::int32_t found = 0;
     for (int x = 0; x < in.width; ++x) found += bad[x];
@@ -104,7 +105,7 @@ class Sanitize final : public Pass {
 
   bool is_good(const FloatImage& in, int x, int y) const {
     for (int c = 0; c < in.channels; ++c)
-      if (!(in.at(x, y, c) <= max_ && in.at(x, y, c) >= -kLargest)) return false;
+      if (!fits(in.at(x, y, c))) return false;
     return true;
   }
 

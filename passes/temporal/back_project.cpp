@@ -56,8 +56,6 @@ const PassInfo kInfo{
     .outputs = {{"motion", kMotion, "previous minus current position, pixels, y down"}},
 };
 
-constexpr float kFarAway = 1e6F;  // pixels; images are at most 65536 wide
-
 struct OnScreen {
   double x = 0, y = 0;
   bool in_front = false;

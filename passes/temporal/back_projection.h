@@ -1,4 +1,5 @@
-// What back_project and previous_position share: the surface point that each pixel shows, and where it stood one frame ago.
+// What the makers of motion and previous_position share: the surface point that each pixel shows, and where it stood one frame
+// ago.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +12,8 @@
 #include "quell/sdk/pass.h"
 
 namespace quell::back_projection {
+
+inline constexpr float kFarAway = 1e6F;  // pixels, off any screen: images are at most 65536 wide
 
 using Matrix = std::array<double, 16>;  // row-major, for column vectors
 inline constexpr Matrix kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <stdexcept>
 
+#include "passes/temporal/back_projection.h"
 #include "quell/sdk/pass.h"
 
 namespace quell {
@@ -62,13 +63,11 @@ const PassInfo kInfo{
     .outputs = {{"motion", kMotion, "previous minus current position, pixels, y down"}},
 };
 
-constexpr float kFarAway = 1e6F;  // pixels; as in back_project
+using back_projection::kFarAway;
 
 // Of an axis, in pixels of the image.
 double jitter_of(const quell_camera* camera, int axis, int size) {
-  if (!camera) return 0;
-  const int camera_size = axis == 0 ? camera->width : camera->height;
-  return camera->jitter[axis] * (camera_size > 0 ? double(size) / camera_size : 1.0);
+  return camera ? camera->jitter[axis] * back_projection::pixel_scale(*camera, axis, size) : 0;
 }
 
 // The comparison is false for NaN.

@@ -6,7 +6,8 @@
 //
 // Departs: the homework fetches by truncation; here that is one choice, and bilinear with a test of every tap is the default.
 //
-// Cost:    4 gathered taps a channel (1 for nearest, 16 for catmull_rom), and as many of each guide, once for all images.
+// Cost:    4 taps a channel (1 for nearest, 16 for catmull_rom), and as many of each guide, once for all images; loaded as
+//          vectors where neighbors moved together, else gathered.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -215,8 +215,7 @@ struct Taps {
     for (int i = kCount - 2; i >= 0; --i) base = hn::IfThenElse(passes[i], values[i], base);
     if constexpr (kCount == 1) return base;
     V way = zero();
-    for (int i = 0; i < kCount; ++i)
-      way = hn::MulAdd(weight[i], hn::IfThenElseZero(passes[i], hn::Sub(values[i], base)), way);
+    for (int i = 0; i < kCount; ++i) way = hn::MulAdd(weight[i], hn::IfThenElseZero(passes[i], hn::Sub(values[i], base)), way);
     V result = hn::Add(base, way);
     if constexpr (kCount == std::size(kSixteen))
       result = hn::Clamp(result, hn::Min(hn::Min(values[0], values[1]), hn::Min(values[2], values[3])),

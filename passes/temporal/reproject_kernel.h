@@ -33,7 +33,7 @@ struct Moved {
   FloatOutput to;
 };
 
-/// Row y of the outputs. Without a `history` nothing is valid.
+/// Row y of the outputs. There is at least one image of the history, and none is absent.
 void reproject_row(const Images& in, const Settings& settings, std::span<const Moved> history, int y, const FloatOutput& valid,
                    const FloatOutput& rejected);
 
