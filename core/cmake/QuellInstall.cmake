@@ -16,7 +16,7 @@ install(FILES ${PROJECT_BINARY_DIR}/quellConfig.cmake ${PROJECT_BINARY_DIR}/quel
 # The public headers by name: what is not listed is private to its box.
 set(public_headers
   simd/isa.h simd/vectors-inl.h
-  sdk/abi.h sdk/types.h sdk/frame.h sdk/params.h sdk/pass.h
+  sdk/abi.h sdk/types.h sdk/frame.h sdk/params.h sdk/pass.h sdk/plain_loop.h
   text/error.h text/diagnostic.h text/json.h text/json_write.h
   image/port_type.h image/buffer_pool.h image/image.h image/item.h image/stream.h
   plugin/registry.h plugin/pass_instance.h

@@ -1,5 +1,7 @@
 #include "quell/image/buffer_pool.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cstring>
@@ -10,8 +12,21 @@
 
 namespace quell {
 namespace {
-constexpr std::align_val_t kAlignment{64};
+
+constexpr std::size_t kCacheLine = 64, kHugePage = std::size_t{2} << 20;
+
+// Pixels of large images are spread over thousands of small pages, more than a processor can remember the places of: a pass that
+// reads a dozen planes is then slowed down by looking them up. Huge pages are asked for where a block has room for some.
+bool wants_huge_pages(std::size_t bytes) { return bytes >= 2 * kHugePage; }
+std::align_val_t alignment(std::size_t bytes) { return std::align_val_t{wants_huge_pages(bytes) ? kHugePage : kCacheLine}; }
+void* allocate_block(std::size_t bytes) {
+  void* data = ::operator new(bytes, alignment(bytes));
+  // Advice: without huge pages everything works as well. What lies behind the last whole one is not ours alone.
+  if (wants_huge_pages(bytes)) ::madvise(data, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
+  return data;
 }
+
+}  // namespace
 
 // The state is shared with every block that is out, so it outlives the pool.
 struct BufferPool::State {
@@ -36,8 +51,8 @@ struct Buffer::Block {
   Block* next = nullptr;                     // of the idle blocks of this size
   std::shared_ptr<BufferPool::State> state;  // set while somebody holds the block; null without a pool
 
-  explicit Block(std::size_t size) : bytes(size), data(::operator new(size, kAlignment)) {}
-  ~Block() { ::operator delete(data, kAlignment); }
+  explicit Block(std::size_t size) : bytes(size), data(allocate_block(size)) {}
+  ~Block() { ::operator delete(data, alignment(bytes)); }
   static Block* try_make(std::size_t size) {
     try {
       return new Block(size);

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <bit>
 
+#include "quell/sdk/plain_loop.h"
+
 namespace quell {
 namespace {
 
@@ -14,14 +16,17 @@ bool is_finite(double value) {
   return (std::bit_cast<std::uint64_t>(value) & kExponent) != kExponent;
 }
 
+QUELL_PLAIN_LOOP int count_non_finite(const float* row, int width) {
+  int found = 0;  // as wide as a float, so that the loop becomes one of vectors
+  for (int x = 0; x < width; ++x) found += is_finite(row[x]) ? 0 : 1;
+  return found;
+}
+
 std::int64_t count_non_finite(const FloatImage& image, Executor& executor) {
   std::atomic<std::int64_t> total{0};
   executor.run(image.height, [&](std::int64_t y, std::uint32_t) {
-    int found = 0;  // as wide as a float, so that the loop becomes one of vectors
-    for (int c = 0; c < image.channels; ++c) {
-      const float* row = image.row(static_cast<int>(y), c);
-      for (int x = 0; x < image.width; ++x) found += is_finite(row[x]) ? 0 : 1;
-    }
+    int found = 0;
+    for (int c = 0; c < image.channels; ++c) found += count_non_finite(image.row(static_cast<int>(y), c), image.width);
     if (found > 0) total += found;
   });
   return total;

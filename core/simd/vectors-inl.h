@@ -69,8 +69,26 @@ HWY_INLINE V3 if_then_else(hn::Mask<D> mask, V3 yes, V3 no) {
 HWY_INLINE V dot(V3 a, V3 b) { return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::Mul(a.x, b.x))); }
 HWY_INLINE V dot_add(V3 a, V3 b, V c) { return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::MulAdd(a.x, b.x, c))); }
 
-// In 2^-e = 2^(f - n) with the nearest integer n, the fit is of 2^f on [-1/2, 1/2], relative, the constant 1 held. `biased` is n
-// as the last bits of a float: subtracting from kExponentRound rounds, and biases as an exponent is biased.
+// exp2(x) is 2^x for x <= 0, -infinity included: error 3.8e-6, exactly 1 at 0; below -126.5, where floats lose their precision,
+// it is at most 2^-126, and exactly 0 from -150 on. exp2_negative(e, gain, limit) is 2^-(gain e) likewise, for e >= 0; `limit` is
+// 127 / gain. To its error comes that of a rounded product, 6e-8 gain e.
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+// 2^x = 2^f 2^floor(x), where the unit yields f and applies the floor in one operation each. The fit is of 2^f on [0, 1],
+// relative, the constant 1 held.
+HWY_INLINE V exp2(V x) {
+  constexpr int kFromFloor = 0x09;
+  const V f{_mm512_reduce_ps(x.raw, kFromFloor)};
+  V p = set(1.342668427e-2F);
+  p = hn::MulAdd(p, f, set(5.224247422e-2F));
+  p = hn::MulAdd(p, f, set(2.412802048e-1F));
+  p = hn::MulAdd(p, f, set(6.930448449e-1F));
+  p = hn::MulAdd(p, f, set(1.0F));
+  return V{_mm512_scalef_ps(p.raw, x.raw)};
+}
+HWY_INLINE V exp2_negative(V e, V gain, V) { return exp2(hn::Mul(e, hn::Neg(gain))); }
+#else
+// In 2^x = 2^(f - n) with the nearest integer n, the fit is of 2^f on [-1/2, 1/2], relative, the constant 1 held. `biased` is n
+// as the last bits of a float: adding to kExponentRound rounds, and biases as an exponent is biased.
 constexpr float kExponentRound = 0x1.8p23F + 127.0F;
 HWY_INLINE V exp2_parts(V f, V biased) {
   const D d;
@@ -81,19 +99,17 @@ HWY_INLINE V exp2_parts(V f, V biased) {
   p = hn::MulAdd(p, f, set(1.0F));
   return hn::Mul(p, hn::BitCast(d, hn::ShiftLeft<23>(hn::BitCast(hn::RebindToUnsigned<D>(), biased))));
 }
-// 2^-e for e >= 0, infinity included; error 3.8e-6, exactly 1 at 0, exactly 0 from e = 126.5 on.
-HWY_INLINE V exp2_negative(V e) {
-  e = hn::Min(e, set(127.0F));
-  const V biased = hn::Sub(set(kExponentRound), e);
-  return exp2_parts(hn::Sub(hn::Sub(set(kExponentRound), biased), e), biased);
+HWY_INLINE V exp2(V x) {
+  x = hn::Max(x, set(-127.0F));
+  const V biased = hn::Add(x, set(kExponentRound));
+  return exp2_parts(hn::Sub(x, hn::Sub(biased, set(kExponentRound))), biased);
 }
-// 2^-(gain e) likewise; `limit` is 127 / gain. To the error comes that of a rounded product, 6e-8 gain e, without fused
-// multiply-add.
 HWY_INLINE V exp2_negative(V e, V gain, V limit) {
   e = hn::Min(e, limit);
   const V biased = hn::NegMulAdd(gain, e, set(kExponentRound));
   return exp2_parts(hn::NegMulAdd(gain, e, hn::Sub(set(kExponentRound), biased)), biased);
 }
+#endif
 
 // Of a linear color with BT.709 primaries; error 3e-7 for components that are at least 0.
 HWY_INLINE V luminance(V3 color) { return dot(color, {set(0.2126F), set(0.7152F), set(0.0722F)}); }

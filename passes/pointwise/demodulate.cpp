@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "quell/sdk/pass.h"
+#include "quell/sdk/plain_loop.h"
 
 namespace quell {
 namespace {
@@ -61,7 +62,8 @@ class Demodulate final : public Pass {
   }
 
  private:
-  void divide_row(const float* color, const float* emission, const float* albedo, int width, float* __restrict out) const {
+  QUELL_PLAIN_LOOP void divide_row(const float* color, const float* emission, const float* albedo, int width,
+                                   float* __restrict out) const {
     if (emission)
       for (int x = 0; x < width; ++x) out[x] = (color[x] - emission[x]) / std::max(albedo[x], floor_);
     else

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "quell/sdk/pass.h"
+#include "quell/sdk/plain_loop.h"
 
 namespace quell {
 namespace {
@@ -70,7 +71,7 @@ class Modulate final : public Pass {
   }
 
  private:
-  void add_row(const float* light, const float* albedo, int width, float* __restrict out) const {
+  QUELL_PLAIN_LOOP void add_row(const float* light, const float* albedo, int width, float* __restrict out) const {
     for (int x = 0; x < width; ++x) out[x] += light[x] * std::max(albedo[x], floor_);
   }
 

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "quell/sdk/pass.h"
+#include "quell/sdk/plain_loop.h"
 
 namespace quell {
 namespace {
@@ -85,7 +86,7 @@ class Sanitize final : public Pass {
   bool fits(float value) const { return value <= max_ && value >= -kLargest; }  // false for NaN
 
   // 1 for each pixel of the row that is to be replaced, else 0; and how many there are.
-  std::int64_t find_bad(const FloatImage& in, int y, std::int32_t* __restrict bad) const {
+  QUELL_PLAIN_LOOP std::int64_t find_bad(const FloatImage& in, int y, std::int32_t* __restrict bad) const {
     for (int x = 0; x < in.width; ++x) bad[x] = 0;
     for (int c = 0; c < in.channels; ++c) {
       const float* row = in.row(y, c);
@@ -97,7 +98,7 @@ class Sanitize final : public Pass {
   }
 
   // Output and input may be the same row: __restrict would deny that, ivdep promises only that no pixel depends on another.
-  void clean_row(const float* in, const std::int32_t* bad, int width, float* out) const {
+  QUELL_PLAIN_LOOP void clean_row(const float* in, const std::int32_t* bad, int width, float* out) const {
     const float floor = floor_;
 #pragma GCC ivdep
     for (int x = 0; x < width; ++x) out[x] = bad[x] ? 0.0F : (in[x] < floor ? floor : in[x]);

@@ -111,8 +111,11 @@ atrous::Settings make_settings(const Params& p) {
   s.stops = p.stops;
   s.step = 1 << p.level;
   const double step = s.step;
-  for (std::size_t i = 0; p.stops == Stops::joint_bilateral && i < atrous::kPairs.size(); ++i)
-    s.offset_exponents[i] = static_cast<float>(kLog2E / 2 * std::pow(step * atrous::kPairs[i].length / p.sigma_coord, 2));
+  for (std::size_t i = 0; i < atrous::kPairs.size(); ++i) {
+    const auto& [dx, dy, h, length] = atrous::kPairs[i];
+    const double distance = p.stops == Stops::joint_bilateral ? step * length / p.sigma_coord : 0;
+    s.offset_exponents[i] = static_cast<float>(std::log2(h) - kLog2E / 2 * distance * distance);
+  }
   if (p.stops == Stops::svgf) {
     s.slope_factor = static_cast<float>(p.sigma_z * step / kLog2E);
     s.depth_eps = static_cast<float>(p.eps_z / kLog2E);

@@ -3,13 +3,13 @@
 // not count (outside the image, no surface, not finite) have a color or a luminance so far from all others that their weight is
 // exactly 0. The loop over the taps is then the formula alone, without an edge or a mask in it.
 //
-// Error of a weight h 2^-E, relative: 3.8e-6 (2^x) + 2e-7 E (roundings), with svgf + 1.5e-7 sigma_n (the cosine is a sum of
-// rounded products) + 6e-7 l / (sigma_l deviation) (so are luminances, whose difference counts), with joint_bilateral + 4.3e-6 E
-// (angle) + 2e-7 / sigma_plane sqrt(2 E) (the height over the plane is a difference). The pixel itself weighs 9/64, so that taps
-// of large E are outweighed, and a result errs by at most twice that, a variance by four times. With sigma_n = 128 and luminances
-// up to 40 sigma_l deviations that is 1e-4 at the very worst; roundings mostly cancel, and the tests see 1e-5. Only fireflies are
-// not outweighed: then it counts that the series of the cosine's power is right to 1.5e-6 absolutely, and to 1.4e-4 relatively
-// while (n.n')^128 is above 2e-4.
+// Error of a weight h 2^-E, relative, h being part of the exponent: 3.8e-6 (2^x) + 2e-7 E (roundings), with svgf + 1.5e-7 sigma_n
+// (the cosine is a sum of rounded products) + 6e-7 l / (sigma_l deviation) (so are luminances, whose difference counts), with
+// joint_bilateral + 4.3e-6 E (angle) + 2e-7 / sigma_plane sqrt(2 E) (the height over the plane is a difference). The pixel itself
+// weighs 9/64, so that taps of large E are outweighed, and a result errs by at most twice that, a variance by four times. With
+// sigma_n = 128 and luminances up to 40 sigma_l deviations that is 1e-4 at the very worst; roundings mostly cancel, and the tests
+// see 1e-5. Only fireflies are not outweighed: then it counts that the series of the cosine's power is right to 1.5e-6
+// absolutely, and to 1.4e-4 relatively while (n.n')^128 is above 2e-4.
 #include "passes/spatial/atrous_kernel.h"
 
 #include <algorithm>
@@ -133,9 +133,8 @@ HWY_INLINE Sums sum_taps(const AnyStops& stops, const typename AnyStops::Pixel& 
   }
   for (std::size_t i = 0; i < kPairs.size(); ++i) {
     float* at = weights + 2 * i * kMaxLanes;
-    const V h = set(kPairs[i].h);
-    hn::Store(hn::Mul(exp2_negative(hn::Load(d, at)), h), d, at);
-    hn::Store(hn::Mul(exp2_negative(hn::Load(d, at + kMaxLanes)), h), d, at + kMaxLanes);
+    hn::Store(exp2(hn::Load(d, at)), d, at);
+    hn::Store(exp2(hn::Load(d, at + kMaxLanes)), d, at + kMaxLanes);
   }
   const V own = set(kB3[0] * kB3[0]);
   Sums a{own, mul(own, at3(taps.center + x, 0)), hn::Mul(hn::Mul(own, own), at(taps.center + x, AnyStops::kVariance))};

@@ -17,18 +17,19 @@ struct Images {
   FloatImage color, normal, position, depth, depth_gradient, variance, blurred_variance;
 };
 
-/// What weights are made of. A weight is h 2^-e; each factor is finite and at least 0.
+/// What weights are made of. A weight is 2^(offset_exponent - e); each factor is finite and at least 0.
 struct Settings {
   Stops stops = Stops::svgf;
   int step = 1;  ///< px between taps
 
-  /// For dammertz and joint_bilateral e = gain (squared distance of color + the terms below) + offset_exponents, so that each
-  /// factor is relative to that of color. `gain` is above 0.
+  std::array<float, 12> offset_exponents{};  ///< by pair: log2 of what depends on the offset alone, h included
+
+  /// For dammertz and joint_bilateral e = gain (squared distance of color + the terms below), so that each factor is relative to
+  /// that of color. `gain` is above 0.
   float gain = 1;
-  float normal_factor = 0;                   ///< of the squared distance or angle of normals
-  float position_factor = 0;                 ///< dammertz: of the squared distance of positions
-  float plane_factor = 0;                    ///< joint_bilateral: it scales a length, not its square
-  std::array<float, 12> offset_exponents{};  ///< by pair: what depends on the offset alone
+  float normal_factor = 0;    ///< of the squared distance or angle of normals
+  float position_factor = 0;  ///< dammertz: of the squared distance of positions
+  float plane_factor = 0;     ///< joint_bilateral: it scales a length, not its square
 
   /// For svgf, where each is for e itself.
   float slope_factor = 0;      ///< of the change of depth; it and the next are in a denominator

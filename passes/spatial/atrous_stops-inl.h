@@ -114,14 +114,15 @@ struct SvgfStops {
     }
   }
 
-  HWY_INLINE V exponent(const Pixel& p, V depth_gain, const float* tap, std::size_t) const {
-    V e = hn::Mul(hn::Abs(hn::Sub(at(tap, kCarrier), p.luminance)), p.luminance_gain);
-    e = hn::MulAdd(hn::Abs(hn::Sub(at(tap, kDepth), p.depth)), depth_gain, e);
+  HWY_INLINE V exponent(const Pixel& p, V depth_gain, const float* tap, std::size_t i) const {
+    V x = set(s.offset_exponents[i]);
+    x = hn::NegMulAdd(hn::Abs(hn::Sub(at(tap, kCarrier), p.luminance)), p.luminance_gain, x);
+    x = hn::NegMulAdd(hn::Abs(hn::Sub(at(tap, kDepth), p.depth)), depth_gain, x);
     const V t = dot_add(p.minus_normal, at3(tap, kNormal), set(1.0F));  // 1 - n.n'
     if constexpr (kWideNormals)
-      return hn::NegMulAdd(set(s.normal_power), hn::Log(D(), hn::Max(hn::Sub(set(1.0F), t), set(1e-37F))), e);
+      return hn::MulAdd(set(s.normal_power), hn::Log(D(), hn::Max(hn::Sub(set(1.0F), t), set(1e-37F))), x);
     else
-      return add_log_narrow(t, set(s.normal_power), e);
+      return add_log_narrow(t, set(-s.normal_power), x);
   }
 
  private:
@@ -219,7 +220,7 @@ struct GuidedStops {
       else
         sum = hn::MulAdd(angle_ratio_narrow(chord, set(s.normal_factor)), chord, sum);
     }
-    return hn::MulAdd(sum, set(s.gain), set(s.offset_exponents[i]));
+    return hn::NegMulAdd(sum, set(s.gain), set(s.offset_exponents[i]));
   }
 };
 

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "quell/sdk/pass.h"
+#include "quell/sdk/plain_loop.h"
 
 namespace quell {
 namespace {
@@ -77,7 +78,8 @@ class DepthGradient final : public Pass {
     return depth < kNoSurface ? larger : 0.0F;
   }
 
-  static void gradient_row(const float* row, const float* above, const float* below, int width, float* __restrict out) {
+  QUELL_PLAIN_LOOP static void gradient_row(const float* row, const float* above, const float* below, int width,
+                                            float* __restrict out) {
     const auto vertical = [=](int x) {
       return std::min(above ? change(row[x], above[x]) : kNone, below ? change(row[x], below[x]) : kNone);
     };

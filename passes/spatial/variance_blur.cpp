@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "quell/sdk/pass.h"
+#include "quell/sdk/plain_loop.h"
 
 namespace quell {
 namespace {
@@ -48,7 +49,7 @@ class VarianceBlur final : public Pass {
 
  private:
   // `columns` has a pixel more on both sides.
-  void blur_row(const FloatImage& in, int y, float* __restrict columns, float* __restrict out) const {
+  QUELL_PLAIN_LOOP void blur_row(const FloatImage& in, int y, float* __restrict columns, float* __restrict out) const {
     const int width = in.width;
     const bool has_above = y > 0, has_below = y + 1 < in.height;
     // A row that is not there is read as the row itself, with weight 0.

@@ -108,7 +108,7 @@ HWY_INLINE Sums sum_taps(const Images& in, const Settings& s, const Window& wind
           e = add_log_narrow(hn::Sub(set(1.0F), cosine), set(s.normal_power), e);
       }
       // Normals that are a little longer than 1 make e negative.
-      const V weight = hn::Mul(exp2_negative(hn::Max(e, zero())), get(window, tap, kCounts));
+      const V weight = hn::Mul(exp2(hn::Neg(hn::Max(e, zero()))), get(window, tap, kCounts));
       sums.weight = hn::Add(sums.weight, weight);
       sums.first = hn::MulAdd(weight, get(window, tap, kFirst), sums.first);
       sums.second = hn::MulAdd(weight, get(window, tap, kSecond), sums.second);

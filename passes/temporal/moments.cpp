@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "quell/sdk/pass.h"
+#include "quell/sdk/plain_loop.h"
 
 namespace quell {
 namespace {
@@ -78,8 +79,8 @@ class Moments final : public Pass {
     const float *red, *green, *blue, *first, *second, *length, *valid;
   };
 
-  void integrate_row(const Row& in, int width, float* __restrict first, float* __restrict second,
-                     float* __restrict length) const {
+  QUELL_PLAIN_LOOP void integrate_row(const Row& in, int width, float* __restrict first, float* __restrict second,
+                                      float* __restrict length) const {
     for (int x = 0; x < width; ++x) {
       const float l = 0.2126F * in.red[x] + 0.7152F * in.green[x] + 0.0722F * in.blue[x];
       first[x] = l, second[x] = l * l, length[x] = 1;

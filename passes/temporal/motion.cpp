@@ -10,6 +10,7 @@
 
 #include "passes/temporal/back_projection.h"
 #include "quell/sdk/pass.h"
+#include "quell/sdk/plain_loop.h"
 
 namespace quell {
 namespace {
@@ -115,8 +116,8 @@ class MotionPass final : public Pass {
   }
 
   // The vectors may lie where the motion is written.
-  static void convert_row(const float* from_x, const float* from_y, const std::array<double, 2>& scale,
-                          const std::array<double, 2>& offset, int width, float* to_x, float* to_y) {
+  QUELL_PLAIN_LOOP static void convert_row(const float* from_x, const float* from_y, const std::array<double, 2>& scale,
+                                           const std::array<double, 2>& offset, int width, float* to_x, float* to_y) {
     for (int x = 0; x < width; ++x) {
       const double dx = scale[0] * double{from_x[x]} + offset[0], dy = scale[1] * double{from_y[x]} + offset[1];
       to_x[x] = near_or(dx, dy);
@@ -124,7 +125,7 @@ class MotionPass final : public Pass {
     }
   }
 
-  static void send_away(const float* valid, int width, float* __restrict to_x, float* __restrict to_y) {
+  QUELL_PLAIN_LOOP static void send_away(const float* valid, int width, float* __restrict to_x, float* __restrict to_y) {
     for (int x = 0; x < width; ++x) {
       to_x[x] = valid[x] > 0 ? to_x[x] : kFarAway;
       to_y[x] = valid[x] > 0 ? to_y[x] : kFarAway;

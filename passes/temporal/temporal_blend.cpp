@@ -15,6 +15,7 @@
 #include <limits>
 
 #include "quell/sdk/pass.h"
+#include "quell/sdk/plain_loop.h"
 
 namespace quell {
 namespace {
@@ -223,14 +224,14 @@ class TemporalBlendPass final : public Pass {
       return blend_ycocg_row(job, y, alphas, scratch + job.out.width);
     for (int c = 0; c < job.out.channels; ++c) {
       if (params_.clamp == Clamp::none)
-        blend_row(job, y, c, alphas, [](int, double history) { return history; });
+        blend_row(job, y, c, alphas, nullptr);
       else
         blend_clamped_row(job, y, c, alphas, scratch + job.out.width);
     }
   }
 
   // The new frame's share in each pixel of the row, and the new length.
-  void find_alphas(const Job& job, int y, double* __restrict alphas) const {
+  QUELL_PLAIN_LOOP void find_alphas(const Job& job, int y, double* __restrict alphas) const {
     const int width = job.out.width;
     const float *length = job.length ? job.length.row(y) : nullptr, *valid = job.valid ? job.valid.row(y) : nullptr,
                 *confidence = job.confidence ? job.confidence.row(y) : nullptr;
@@ -248,24 +249,28 @@ class TemporalBlendPass final : public Pass {
 
   // The output may lie on the history, pixel for pixel: __restrict would deny that, ivdep promises only that no pixel depends on
   // another.
-  template <class Limit>
-  void blend_row(const Job& job, int y, int c, const double* alphas, const Limit& limit) const {
+  QUELL_PLAIN_LOOP static void blend_row(const Job& job, int y, int c, const double* alphas, const Limits* limits) {
     const float *color = job.color.row(y, c), *history = job.history.row(y, c);
     const float* valid = job.valid ? job.valid.row(y) : nullptr;
     float* out = job.out.row(y, c);
-#pragma GCC ivdep
-    for (int x = 0; x < job.out.width; ++x) {
-      const float mixed = static_cast<float>(alphas[x] * color[x] + (1 - alphas[x]) * limit(x, history[x]));
+    const auto blend = [=](int x, double limited) {
+      const float mixed = static_cast<float>(alphas[x] * color[x] + (1 - alphas[x]) * limited);
       // Chosen, not multiplied by 0: what is not valid need not be finite.
-      out[x] = !valid || valid[x] > 0.5F ? mixed : color[x];
-    }
+      return !valid || valid[x] > 0.5F ? mixed : color[x];
+    };
+    if (limits)
+#pragma GCC ivdep
+      for (int x = 0; x < job.out.width; ++x) out[x] = blend(x, limits->apply(x, history[x]));
+    else
+#pragma GCC ivdep
+      for (int x = 0; x < job.out.width; ++x) out[x] = blend(x, history[x]);
   }
 
   void blend_clamped_row(const Job& job, int y, int c, const double* alphas, double* scratch) const {
     const std::size_t stride = padded(job.out.width);
     const Limits limits{scratch + 2 * stride, scratch + 3 * stride};
     find_limits(job, y, c, scratch, limits);
-    blend_row(job, y, c, alphas, [=](int x, double history) { return limits.apply(x, history); });
+    blend_row(job, y, c, alphas, &limits);
   }
 
   // As blend_row, of all channels at once: the output may lie on the history.

@@ -30,8 +30,9 @@ struct Mix {
 constexpr Mix kSub3{.add = 3};
 constexpr Mix kDot3{.fma = 2, .mul = 1};
 constexpr Mix kDotAdd3{.fma = 3};
-/// exp2_negative(): the limit, rounding, the rest, four steps of Horner's rule, and the exponent put in.
-constexpr Mix kExp2{.fma = 6, .add = 1, .mul = 1, .min_max = 1, .shift = 1};
+/// exp2_negative(): the product with the gain, the rest of rounding, four steps of Horner's rule, and the exponent put in. That
+/// is of AVX-512; other units need three operations more.
+constexpr Mix kExp2{.fma = 4, .mul = 1, .shift = 2};
 
 /// A tap of sum_taps() of passes/spatial/joint_bilateral_kernel.cpp with all four terms, distances in pixels, narrow normals.
 constexpr Mix kJointBilateralMix = Mix{.load = 3} + kSub3 + kDot3 + kDotAdd3 +  // position: way, height, length
@@ -44,10 +45,10 @@ constexpr Mix kJointBilateralMix = Mix{.load = 3} + kSub3 + kDot3 + kDotAdd3 +  
 /// A pixel of filter_row() of passes/spatial/atrous_kernel.cpp with the stops of SVGF, narrow normals, a variance, and the
 /// depth's gradient taken there. What gathers rows is left out, and so are exponents and weights that wait in memory.
 constexpr Mix kAtrousTap =
-    Mix{.add = 1, .mul = 1, .logic = 1, .load = 1} +                          // luminance
+    Mix{.fma = 1, .add = 1, .logic = 1, .load = 1} +                          // luminance
     Mix{.fma = 1, .add = 1, .logic = 1, .load = 1} +                          // depth
     kDotAdd3 + Mix{.fma = 3, .load = 3} +                                     // normal: cosine and logarithm
-    Mix{.fma = 4, .add = 3, .mul = 2, .min_max = 1, .shift = 1} +             // exp2_negative() without a gain; the spline
+    Mix{.fma = 4, .shift = 2} +                                               // exp2(), of AVX-512
     Mix{.fma = 3, .add = 1, .load = 3} + Mix{.fma = 1, .mul = 1, .load = 1};  // sums; that of the variance
 constexpr Mix kAtrousPair{.fma = 4, .mul = 1, .estimate = 1, .logic = 1};     // two taps share the gain of depths
 constexpr Mix kAtrousSlope{.add = 2, .logic = 13, .load = 3};

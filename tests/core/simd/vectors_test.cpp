@@ -20,7 +20,7 @@ using namespace simd::HWY_NAMESPACE;  // NOLINT: the vocabulary of kernels
 HWY_INLINE V call(Function function, V x) {
   switch (function) {
     case Function::exp2:
-      return exp2_negative(x);
+      return exp2(hn::Neg(x));
     case Function::exp2_gain:
       return exp2_negative(x, set(0.375F), set(127.0F / 0.375F));
     case Function::reciprocal:
@@ -138,9 +138,9 @@ TEST_P(VectorsOnTarget, TakesPowersOfTwoOfEveryNegativeNumber) {
   const auto want = [](double e) { return std::exp2(-e); };
   for (const auto& inputs : {floats_between(0, last), spaced_between(0, last)})
     EXPECT_LT(worst(Function::exp2, inputs, want, relative), 3.8e-6);
-  EXPECT_EQ(worst(
-                Function::exp2, floats_between(126.5F, kInfinity), [](double) { return 0; }, absolute),
-            0);
+  const auto nothing = [](double) { return 0; };
+  EXPECT_LE(worst(Function::exp2, floats_between(126.5F, 150), nothing, absolute), 0x1p-126);
+  EXPECT_EQ(worst(Function::exp2, floats_between(150, kInfinity), nothing, absolute), 0);
   EXPECT_EQ(call_one(Function::exp2, 0), 1);
   EXPECT_EQ(call_one(Function::exp2, 3), 0.125F);
 }
