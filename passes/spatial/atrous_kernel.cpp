@@ -119,31 +119,28 @@ HWY_INLINE void add_tap(V weight, const float* tap, Sums& sums) {
   sums.variance = hn::MulAdd(hn::Mul(weight, weight), at(tap, AnyStops::kVariance), sums.variance);
 }
 
-// In three turns over all taps, the exponents and weights of which wait in memory: a tap's way from the first to the last
-// operation is so long that a processor cannot look far enough ahead to be busy with several.
+// In groups of pairs: a tap's way from the first to the last operation is so long that a processor cannot look far enough ahead to
+// be busy with several, unless they go side by side.
 template <class AnyStops>
 HWY_INLINE Sums sum_taps(const AnyStops& stops, const typename AnyStops::Pixel& pixel, const Taps& taps, int x) {
-  const D d;
-  HWY_ALIGN float weights[2 * kPairs.size() * kMaxLanes];
-  for (std::size_t i = 0; i < kPairs.size(); ++i) {
-    const auto pair = stops.pair(pixel, i);
-    float* to = weights + 2 * i * kMaxLanes;
-    hn::Store(stops.exponent(pixel, pair, taps.first[2 * i] + x, i), d, to);
-    hn::Store(stops.exponent(pixel, pair, taps.first[2 * i + 1] + x, i), d, to + kMaxLanes);
-  }
-  for (std::size_t i = 0; i < kPairs.size(); ++i) {
-    float* at = weights + 2 * i * kMaxLanes;
-    hn::Store(exp2(hn::Load(d, at)), d, at);
-    hn::Store(exp2(hn::Load(d, at + kMaxLanes)), d, at + kMaxLanes);
-  }
+  constexpr std::size_t kGroup = 2;
   const V own = set(kB3[0] * kB3[0]);
-  Sums a{own, mul(own, at3(taps.center + x, 0)), hn::Mul(hn::Mul(own, own), at(taps.center + x, AnyStops::kVariance))};
-  Sums b{zero(), zero3(), zero()};
-  for (std::size_t i = 0; i < 2 * kPairs.size(); i += 2) {
-    add_tap<AnyStops>(hn::Load(d, weights + i * kMaxLanes), taps.first[i] + x, a);
-    add_tap<AnyStops>(hn::Load(d, weights + (i + 1) * kMaxLanes), taps.first[i + 1] + x, b);
+  Sums sums{own, mul(own, at3(taps.center + x, 0)), hn::Mul(hn::Mul(own, own), at(taps.center + x, AnyStops::kVariance))};
+  for (std::size_t first = 0; first < kPairs.size(); first += kGroup) {
+    V weight[2 * kGroup];
+#pragma GCC unroll 8
+    for (std::size_t k = 0; k < kGroup; ++k) {
+      const std::size_t i = first + k;
+      const auto pair = stops.pair(pixel, i);
+      weight[2 * k] = stops.exponent(pixel, pair, taps.first[2 * i] + x, i);
+      weight[2 * k + 1] = stops.exponent(pixel, pair, taps.first[2 * i + 1] + x, i);
+    }
+#pragma GCC unroll 8
+    for (V& w : weight) w = exp2(w);
+#pragma GCC unroll 8
+    for (std::size_t k = 0; k < 2 * kGroup; ++k) add_tap<AnyStops>(weight[k], taps.first[2 * first + k] + x, sums);
   }
-  return {hn::Add(a.weight, b.weight), add(a.color, b.color), hn::Add(a.variance, b.variance)};
+  return sums;
 }
 
 template <class AnyStops>
