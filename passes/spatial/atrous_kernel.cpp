@@ -119,8 +119,8 @@ HWY_INLINE void add_tap(V weight, const float* tap, Sums& sums) {
   sums.variance = hn::MulAdd(hn::Mul(weight, weight), at(tap, AnyStops::kVariance), sums.variance);
 }
 
-// In groups of pairs: a tap's way from the first to the last operation is so long that a processor cannot look far enough ahead to
-// be busy with several, unless they go side by side.
+// In groups of pairs: a tap's way from the first to the last operation is so long that a processor cannot look far enough ahead
+// to be busy with several, unless they go side by side.
 template <class AnyStops>
 HWY_INLINE Sums sum_taps(const AnyStops& stops, const typename AnyStops::Pixel& pixel, const Taps& taps, int x) {
   constexpr std::size_t kGroup = 2;
@@ -143,14 +143,33 @@ HWY_INLINE Sums sum_taps(const AnyStops& stops, const typename AnyStops::Pixel& 
   return sums;
 }
 
+// The row that is gathered after this one is filtered: memory yields it while there is arithmetic to do.
+class Ahead {
+ public:
+  Ahead(const Images& in, int y) {  // no row when y is negative
+    for (const FloatImage* image : {&in.color, &in.normal, &in.position, &in.depth, &in.variance})
+      for (int c = 0; *image && y >= 0 && c < image->channels; ++c) planes_[count_++] = image->row(y, c);
+  }
+  HWY_INLINE void fetch(int x) const {
+    constexpr int kToRead = 0, kSecondLevelCache = 2;
+    for (int i = 0; i < count_; ++i) __builtin_prefetch(planes_[static_cast<std::size_t>(i)] + x, kToRead, kSecondLevelCache);
+  }
+
+ private:
+  std::array<const float*, 11> planes_;
+  int count_ = 0;
+};
+
 template <class AnyStops>
 void filter_row(const AnyStops& stops, const Job& job, const Phase& phase, int index) {
   const int y = phase.first + index * job.step;
   const Taps taps = find_taps(job, phase, index);
   stops.prepare(taps.center, job.left, job.right, y, job.prepared());
+  const Ahead ahead(stops.in, index + kReach + 1 < phase.count ? y + (kReach + 1) * job.step : -1);
   for (int x = job.left; x < job.right; x += lanes()) {
     const int column = x - job.left;
     const float* center = taps.center + column;
+    ahead.fetch(x);
     const Sums sums = sum_taps(stops, stops.pixel(center, job.prepared() + column), taps, column);
     const V scale = hn::Div(set(1.0F), sums.weight);
     const Mask counts = hn::Lt(at(center, AnyStops::kCarrier), set(kFar));
