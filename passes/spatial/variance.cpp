@@ -7,6 +7,8 @@
 // Departs: the estimate averages the moments; boost, sigma_l and filter_color are those of Falcor's SVGFPass.
 //
 // Cost:    one multiply-add a pixel where history is long; (2 radius + 1)^2 taps of some 35 operations where it is short.
+#include <cmath>
+
 #include "passes/spatial/variance_kernel.h"
 #include "quell/sdk/pass.h"
 
@@ -64,14 +66,19 @@ const PassInfo kInfo{
 constexpr double kLog2E = 1.4426950408889634;
 
 variance::Settings make_settings(const Params& p) {
-  return {.radius = p.radius,
-          .min_length = static_cast<float>(p.min_length),
-          .luminance_factor = p.sigma_l > 0 ? static_cast<float>(kLog2E / p.sigma_l) : 0,
-          .depth_factor = static_cast<float>(p.sigma_z / kLog2E),
-          .normal_power = static_cast<float>(p.sigma_n * kLog2E),
-          .wide_normals = p.sigma_n < 64,
-          .boost = p.boost == Boost::young,
-          .filter_color = p.filter_color};
+  variance::Settings s{.radius = p.radius,
+                       .min_length = static_cast<float>(p.min_length),
+                       .luminance_factor = p.sigma_l > 0 ? static_cast<float>(kLog2E / p.sigma_l) : 0,
+                       .normal_power = static_cast<float>(p.sigma_n * kLog2E),
+                       .wide_normals = p.sigma_n < 64,
+                       .boost = p.boost == Boost::young,
+                       .filter_color = p.filter_color};
+  for (std::size_t dy = 0; dy <= variance::kMaxRadius; ++dy)
+    for (std::size_t dx = 0; dx <= variance::kMaxRadius; ++dx)
+      if (dx + dy > 0)
+        s.depth_factors[dy][dx] =
+            static_cast<float>(kLog2E / (p.sigma_z * std::hypot(static_cast<double>(dx), static_cast<double>(dy))));
+  return s;
 }
 
 class Variance final : public Pass {

@@ -3,7 +3,7 @@
 #include "passes/spatial/variance_kernel.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdlib>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "passes/spatial/variance_kernel.cpp"  // from the repository root
@@ -18,11 +18,12 @@
 namespace quell::variance {
 
 // Planes of a row in scratch memory.
-enum Plane { kCounts, kFirst, kSecond, kLuminance, kColor, kDepth = kColor + 3, kNormal, kPlanes = kNormal + 3 };
+enum Plane { kFirst, kSecond, kLuminance, kColor, kDepth = kColor + 3, kNormal, kPlanes = kNormal + 3 };
 
 constexpr float kNoSurface = 1e10F;
-constexpr float kSmallestGradient = 1e-8F;    // Falcor's
-constexpr float kSmallestTolerance = 1e-30F;  // of a difference in depth; its reciprocal is still finite
+constexpr float kSmallestGradient = 1e-8F;  // Falcor's
+constexpr float kFar = 1e18F;               // as luminance: a tap that does not count; its weight is exactly 0
+constexpr float kSmallestFactor = 1e-15F;   // with it luminances do not matter, but kFar does
 
 // Rows around row y, each of kPlanes planes. A row stays where it is while the window moves on.
 struct Window {
@@ -46,36 +47,41 @@ using namespace simd::HWY_NAMESPACE;  // NOLINT: the vocabulary of kernels
 
 using Mask = hn::Mask<D>;
 
-HWY_INLINE void put(V v, const Window& window, float* pixel, int plane) { hn::StoreU(v, D(), pixel + plane * window.stride); }
 HWY_INLINE V get(const Window& window, const float* pixel, int plane) { return hn::LoadU(D(), pixel + plane * window.stride); }
 HWY_INLINE V3 get3(const Window& window, const float* pixel, int plane) {
   return load(pixel + plane * window.stride, window.stride);
 }
 
-// Row y of the images, or a row of taps that do not count where it lies outside.
-void gather_row(const Images& in, int y, const Window& window, float* to) {
+constexpr float outside(int plane) { return plane == kLuminance ? kFar : 0; }
+
+// Lays [begin, end) of a row outside of the image.
+void fill_outside(const Window& window, int begin, int end, float* row) {
   for (int plane = 0; plane < kPlanes; ++plane)
-    std::fill_n(to + plane * window.stride - window.radius, in.color.width + 2 * window.radius + kMaxLanes, 0.0F);
-  if (y < 0 || y >= in.color.height) return;
+    std::fill(row + plane * window.stride + begin, row + plane * window.stride + end, outside(plane));
+}
+
+// Row y of the images, or a row of taps that do not count where it lies outside. Guides that are absent are the same everywhere.
+void gather_row(const Images& in, const Settings& s, int y, const Window& window, float* to) {
+  const int width = in.color.width;
+  if (y < 0 || y >= in.color.height) return fill_outside(window, -window.radius, width + window.radius + kMaxLanes, to);
   const D d;
-  for (int x = 0; x < in.color.width; x += lanes()) {
-    Mask counts = hn::FirstN(d, static_cast<std::size_t>(in.color.width - x));
+  for (int x = 0; x < width; x += lanes()) {
+    Mask counts = hn::FirstN(d, static_cast<std::size_t>(width - x));
     const V depth = in.depth ? hn::LoadU(d, in.depth.row(y) + x) : zero();
     if (in.depth) counts = hn::And(counts, hn::Lt(depth, set(kNoSurface)));
-    const auto keep = [&](V v) { return hn::IfThenElseZero(counts, v); };
     const V3 color = load(in.color.row(y) + x, in.color.plane_stride);
-    put(keep(set(1.0F)), window, to + x, kCounts);
-    put(keep(hn::LoadU(d, in.moments.row(y, 0) + x)), window, to + x, kFirst);
-    put(keep(hn::LoadU(d, in.moments.row(y, 1) + x)), window, to + x, kSecond);
-    put(keep(luminance(color)), window, to + x, kLuminance);
-    put(keep(color.x), window, to + x, kColor), put(keep(color.y), window, to + x, kColor + 1);
-    put(keep(color.z), window, to + x, kColor + 2);
-    put(keep(depth), window, to + x, kDepth);
-    if (!in.normal) continue;
-    const V3 normal = load(in.normal.row(y) + x, in.normal.plane_stride);
-    put(keep(normal.x), window, to + x, kNormal), put(keep(normal.y), window, to + x, kNormal + 1);
-    put(keep(normal.z), window, to + x, kNormal + 2);
+    const V3 normal = in.normal ? load(in.normal.row(y) + x, in.normal.plane_stride) : V3{zero(), zero(), set(1.0F)};
+    const auto put = [&](V v, int plane) {
+      hn::StoreU(hn::IfThenElse(counts, v, set(outside(plane))), d, to + x + plane * window.stride);
+    };
+    put(hn::LoadU(d, in.moments.row(y, 0) + x), kFirst), put(hn::LoadU(d, in.moments.row(y, 1) + x), kSecond);
+    put(s.luminance_factor > 0 ? luminance(color) : zero(), kLuminance);
+    put(color.x, kColor), put(color.y, kColor + 1), put(color.z, kColor + 2);
+    put(in.depth_gradient ? depth : zero(), kDepth);
+    put(normal.x, kNormal), put(normal.y, kNormal + 1), put(normal.z, kNormal + 2);
   }
+  fill_outside(window, -window.radius, 0, to);
+  fill_outside(window, width, width + window.radius + kMaxLanes, to);
 }
 
 // What a pixel's window sums up to.
@@ -84,62 +90,65 @@ struct Sums {
   V3 color;
 };
 
-template <bool kWideNormals>
-HWY_INLINE Sums sum_taps(const Images& in, const Settings& s, const Window& window, int x, V gradient) {
+// `steepness` is 1 over the gradient.
+template <bool kWideNormals, bool kFiltersColor>
+HWY_INLINE Sums sum_taps(const Settings& s, const Window& window, int x, V steepness) {
   const float* center = window.row(0) + x;
   const V luminance = get(window, center, kLuminance), depth = get(window, center, kDepth);
-  const V3 normal = get3(window, center, kNormal);
+  const V luminance_gain = set(std::max(s.luminance_factor, kSmallestFactor));
+  const V3 minus_normal = sub(V3{zero(), zero(), zero()}, get3(window, center, kNormal));
+  const V normal_power = set(s.normal_power), minus_power = hn::Neg(normal_power);
   Sums sums{zero(), zero(), zero(), {zero(), zero(), zero()}};
-  for (int dy = -s.radius; dy <= s.radius; ++dy)
+  for (int dy = -s.radius; dy <= s.radius; ++dy) {
+    const float* row = window.row(dy) + x;
+    const auto& depth_factors = s.depth_factors[static_cast<std::size_t>(std::abs(dy))];
     for (int dx = -s.radius; dx <= s.radius; ++dx) {
-      const float* tap = window.row(dy) + x + dx;
-      V e = zero();
-      if (s.luminance_factor > 0) e = hn::Mul(hn::Abs(hn::Sub(get(window, tap, kLuminance), luminance)), set(s.luminance_factor));
-      if (in.depth_gradient && (dx != 0 || dy != 0)) {
-        const V tolerance = hn::Mul(gradient, set(s.depth_factor * std::sqrt(static_cast<float>(dx * dx + dy * dy))));
-        const V difference = hn::Abs(hn::Sub(get(window, tap, kDepth), depth));
-        e = hn::Add(e, hn::Div(difference, hn::Max(tolerance, set(kSmallestTolerance))));
-      }
-      if (in.normal) {
-        const V cosine = dot(normal, get3(window, tap, kNormal));
-        if constexpr (kWideNormals)
-          e = hn::NegMulAdd(set(s.normal_power), hn::Log(D(), hn::Max(cosine, set(1e-37F))), e);
-        else
-          e = add_log_narrow(hn::Sub(set(1.0F), cosine), set(s.normal_power), e);
-      }
-      // Normals that are a little longer than 1 make e negative.
-      const V weight = hn::Mul(exp2(hn::Neg(hn::Max(e, zero()))), get(window, tap, kCounts));
+      const float* tap = row + dx;
+      const V depth_gain = hn::Mul(steepness, set(depth_factors[static_cast<std::size_t>(std::abs(dx))]));
+      const V t = dot_add(minus_normal, get3(window, tap, kNormal), set(1.0F));  // 1 - n.n'
+      V exponent = hn::Mul(hn::Abs(hn::Sub(get(window, tap, kDepth), depth)), depth_gain);
+      exponent = hn::MulAdd(hn::Abs(hn::Sub(get(window, tap, kLuminance), luminance)), luminance_gain, exponent);
+      if constexpr (kWideNormals)
+        exponent = hn::MulSub(normal_power, hn::Log(D(), hn::Max(hn::Sub(set(1.0F), t), set(1e-37F))), exponent);
+      else
+        exponent = add_log_narrow(t, minus_power, hn::Neg(exponent));
+      // Normals that are a little longer than 1 make it positive.
+      const V weight = exp2(hn::Min(exponent, zero()));
       sums.weight = hn::Add(sums.weight, weight);
       sums.first = hn::MulAdd(weight, get(window, tap, kFirst), sums.first);
       sums.second = hn::MulAdd(weight, get(window, tap, kSecond), sums.second);
-      if (s.filter_color) sums.color = mul_add(weight, get3(window, tap, kColor), sums.color);
+      if constexpr (kFiltersColor) sums.color = mul_add(weight, get3(window, tap, kColor), sums.color);
     }
+  }
   return sums;
 }
 
-template <bool kWideNormals>
+template <bool kWideNormals, bool kFiltersColor>
 void estimate_row(const Images& in, const Settings& s, int y, const FloatOutput& variance, const FloatOutput& color,
                   const Window& window, int& gathered) {
   const D d;
-  for (int row = std::max(y - s.radius, gathered); row <= y + s.radius; ++row) gather_row(in, row, window, window.row(row - y));
+  for (int row = std::max(y - s.radius, gathered); row <= y + s.radius; ++row)
+    gather_row(in, s, row, window, window.row(row - y));
   gathered = y + s.radius + 1;
   for (int x = 0; x < variance.width; x += lanes()) {
     const int count = variance.width - x;
     const V length = in.length ? hn::LoadU(d, in.length.row(y) + x) : set(1.0F);
     const float* center = window.row(0) + x;
-    const Mask young = hn::And(hn::Lt(length, set(s.min_length)), hn::Gt(get(window, center, kCounts), zero()));
+    const Mask counts = hn::Lt(get(window, center, kLuminance), set(kFar));
+    const Mask young = hn::And(hn::Lt(length, set(s.min_length)), counts);
     if (hn::AllFalse(d, young)) continue;
-    const V gradient = in.depth_gradient ? hn::Max(hn::LoadU(d, in.depth_gradient.row(y) + x), set(kSmallestGradient)) : zero();
-    const Sums sums = sum_taps<kWideNormals>(in, s, window, x, gradient);
+    const V one = set(1.0F);
+    V steepness = zero();
+    if (in.depth_gradient) steepness = hn::Div(one, hn::Max(hn::LoadU(d, in.depth_gradient.row(y) + x), set(kSmallestGradient)));
+    const Sums sums = sum_taps<kWideNormals, kFiltersColor>(s, window, x, steepness);
     const Mask good = hn::And(young, hn::Gt(sums.weight, zero()));
-    const V first = hn::Div(sums.first, sums.weight), second = hn::Div(sums.second, sums.weight);
+    const V scale = hn::Div(one, sums.weight), first = hn::Mul(sums.first, scale), second = hn::Mul(sums.second, scale);
     V estimate = hn::Max(hn::NegMulAdd(first, first, second), zero());
-    if (s.boost) estimate = hn::Mul(estimate, hn::Div(set(s.min_length), hn::Max(length, set(1.0F))));
+    if (s.boost) estimate = hn::Mul(estimate, hn::Div(set(s.min_length), hn::Max(length, one)));
     store(hn::IfThenElse(good, estimate, hn::LoadU(d, variance.row(y) + x)), count, variance.row(y) + x);
-    if (!s.filter_color) continue;
-    const V3 mean{hn::Div(sums.color.x, sums.weight), hn::Div(sums.color.y, sums.weight), hn::Div(sums.color.z, sums.weight)};
-    store(if_then_else(good, mean, load(in.color.row(y) + x, in.color.plane_stride)), count, color.row(y) + x,
-          color.plane_stride);
+    if constexpr (kFiltersColor)
+      store(if_then_else(good, mul(scale, sums.color), load(in.color.row(y) + x, in.color.plane_stride)), count, color.row(y) + x,
+            color.plane_stride);
   }
 }
 
@@ -159,10 +168,9 @@ void VarianceRow(const Images& in, const Settings& s, int y, const FloatOutput& 
   }
   if (hn::AllFalse(d, any_young)) return;
   const Window window{scratch, stride(width, s.radius), s.radius, y};
-  if (s.wide_normals)
-    estimate_row<true>(in, s, y, variance, color, window, gathered);
-  else
-    estimate_row<false>(in, s, y, variance, color, window, gathered);
+  auto* estimate = s.wide_normals ? estimate_row<true, false> : estimate_row<false, false>;
+  if (s.filter_color) estimate = s.wide_normals ? estimate_row<true, true> : estimate_row<false, true>;
+  estimate(in, s, y, variance, color, window, gathered);
 }
 
 }  // namespace quell::variance::HWY_NAMESPACE

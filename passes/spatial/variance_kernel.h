@@ -1,6 +1,7 @@
 // Variance where history is short, over rows of pixels, on the vector unit of the machine. variance.cpp makes a pass of it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "quell/sdk/types.h"
@@ -19,9 +20,10 @@ struct Settings {
   int radius = 3;
   float min_length = 4;
   float luminance_factor = 0;  ///< of the difference of luminances
-  float depth_factor = 0;      ///< of the gradient times the distance in pixels, in a denominator
-  float normal_power = 0;      ///< of -ln(n.n')
-  bool wide_normals = false;   ///< a power below 64
+  /// By |dy| and |dx|: of the difference of depths over the gradient.
+  std::array<std::array<float, kMaxRadius + 1>, kMaxRadius + 1> depth_factors{};
+  float normal_power = 0;     ///< of -ln(n.n')
+  bool wide_normals = false;  ///< a power below 64
   bool boost = false;
   bool filter_color = false;
 };
