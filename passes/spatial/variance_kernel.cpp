@@ -84,43 +84,47 @@ void gather_row(const Images& in, const Settings& s, int y, const Window& window
   fill_outside(window, width, width + window.radius + kMaxLanes, to);
 }
 
+// Where the window's rows begin.
+using Rows = std::array<const float*, 2 * kMaxRadius + 1>;
+
 // What a pixel's window sums up to.
 struct Sums {
   V weight, first, second;
   V3 color;
 };
 
-// `steepness` is 1 over the gradient.
+// `minus_steepness` is -1 over the gradient.
 template <bool kWideNormals, bool kFiltersColor>
-HWY_INLINE Sums sum_taps(const Settings& s, const Window& window, int x, V steepness) {
-  const float* center = window.row(0) + x;
+HWY_INLINE Sums sum_taps(const Settings& s, const Window& window, const Rows& rows, int x, V minus_steepness) {
+  const float* center = rows[static_cast<std::size_t>(s.radius)] + x;
   const V luminance = get(window, center, kLuminance), depth = get(window, center, kDepth);
   const V luminance_gain = set(std::max(s.luminance_factor, kSmallestFactor));
   const V3 minus_normal = sub(V3{zero(), zero(), zero()}, get3(window, center, kNormal));
   const V normal_power = set(s.normal_power), minus_power = hn::Neg(normal_power);
-  Sums sums{zero(), zero(), zero(), {zero(), zero(), zero()}};
+  V sum = zero(), first = zero(), second = zero();
+  V3 color{zero(), zero(), zero()};
   for (int dy = -s.radius; dy <= s.radius; ++dy) {
-    const float* row = window.row(dy) + x;
+    const float* row = rows[static_cast<std::size_t>(dy + s.radius)] + x;
     const auto& depth_factors = s.depth_factors[static_cast<std::size_t>(std::abs(dy))];
     for (int dx = -s.radius; dx <= s.radius; ++dx) {
       const float* tap = row + dx;
-      const V depth_gain = hn::Mul(steepness, set(depth_factors[static_cast<std::size_t>(std::abs(dx))]));
+      const V depth_gain = hn::Mul(minus_steepness, set(depth_factors[static_cast<std::size_t>(std::abs(dx))]));
       const V t = dot_add(minus_normal, get3(window, tap, kNormal), set(1.0F));  // 1 - n.n'
       V exponent = hn::Mul(hn::Abs(hn::Sub(get(window, tap, kDepth), depth)), depth_gain);
-      exponent = hn::MulAdd(hn::Abs(hn::Sub(get(window, tap, kLuminance), luminance)), luminance_gain, exponent);
+      exponent = hn::NegMulAdd(hn::Abs(hn::Sub(get(window, tap, kLuminance), luminance)), luminance_gain, exponent);
       if constexpr (kWideNormals)
-        exponent = hn::MulSub(normal_power, hn::Log(D(), hn::Max(hn::Sub(set(1.0F), t), set(1e-37F))), exponent);
+        exponent = hn::MulAdd(normal_power, hn::Log(D(), hn::Max(hn::Sub(set(1.0F), t), set(1e-37F))), exponent);
       else
-        exponent = add_log_narrow(t, minus_power, hn::Neg(exponent));
+        exponent = add_log_narrow(t, minus_power, exponent);
       // Normals that are a little longer than 1 make it positive.
       const V weight = exp2(hn::Min(exponent, zero()));
-      sums.weight = hn::Add(sums.weight, weight);
-      sums.first = hn::MulAdd(weight, get(window, tap, kFirst), sums.first);
-      sums.second = hn::MulAdd(weight, get(window, tap, kSecond), sums.second);
-      if constexpr (kFiltersColor) sums.color = mul_add(weight, get3(window, tap, kColor), sums.color);
+      sum = hn::Add(sum, weight);
+      first = hn::MulAdd(weight, get(window, tap, kFirst), first);
+      second = hn::MulAdd(weight, get(window, tap, kSecond), second);
+      if constexpr (kFiltersColor) color = mul_add(weight, get3(window, tap, kColor), color);
     }
   }
-  return sums;
+  return {sum, first, second, color};
 }
 
 template <bool kWideNormals, bool kFiltersColor>
@@ -130,6 +134,8 @@ void estimate_row(const Images& in, const Settings& s, int y, const FloatOutput&
   for (int row = std::max(y - s.radius, gathered); row <= y + s.radius; ++row)
     gather_row(in, s, row, window, window.row(row - y));
   gathered = y + s.radius + 1;
+  Rows rows{};
+  for (int dy = -s.radius; dy <= s.radius; ++dy) rows[static_cast<std::size_t>(dy + s.radius)] = window.row(dy);
   for (int x = 0; x < variance.width; x += lanes()) {
     const int count = variance.width - x;
     const V length = in.length ? hn::LoadU(d, in.length.row(y) + x) : set(1.0F);
@@ -138,9 +144,10 @@ void estimate_row(const Images& in, const Settings& s, int y, const FloatOutput&
     const Mask young = hn::And(hn::Lt(length, set(s.min_length)), counts);
     if (hn::AllFalse(d, young)) continue;
     const V one = set(1.0F);
-    V steepness = zero();
-    if (in.depth_gradient) steepness = hn::Div(one, hn::Max(hn::LoadU(d, in.depth_gradient.row(y) + x), set(kSmallestGradient)));
-    const Sums sums = sum_taps<kWideNormals, kFiltersColor>(s, window, x, steepness);
+    V minus_steepness = zero();
+    if (in.depth_gradient)
+      minus_steepness = hn::Div(set(-1.0F), hn::Max(hn::LoadU(d, in.depth_gradient.row(y) + x), set(kSmallestGradient)));
+    const Sums sums = sum_taps<kWideNormals, kFiltersColor>(s, window, rows, x, minus_steepness);
     const Mask good = hn::And(young, hn::Gt(sums.weight, zero()));
     const V scale = hn::Div(one, sums.weight), first = hn::Mul(sums.first, scale), second = hn::Mul(sums.second, scale);
     V estimate = hn::Max(hn::NegMulAdd(first, first, second), zero());
