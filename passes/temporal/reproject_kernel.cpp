@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <type_traits>
 
@@ -47,84 +48,102 @@ using VI = hn::Vec<DI>;
 
 HWY_INLINE VI set_int(int value) { return hn::Set(DI(), value); }
 HWY_INLINE Mask float_mask(hn::Mask<DI> mask) { return hn::RebindMask(D(), mask); }
-HWY_INLINE int first_true(Mask mask) { return static_cast<int>(hn::FindFirstTrue(D(), mask)); }
+template <class T>
+using Tag = std::conditional_t<std::is_same_v<T, float>, D, DU>;
 
 // Lanes whose pixels are neighbors: that of lane i is (x + i, y).
 struct Run {
   int x = 0, y = 0;
 };
 
-// The pixel of the previous frame that each lane's taps are relative to. Lanes that are not `active` may be anywhere.
-class Site {
- public:
-  HWY_INLINE Site(VI x, VI y, Mask active) : x_(x), y_(y) {
-    HWY_ALIGN int xs[kMaxLanes], ys[kMaxLanes];
-    const DI d;
-    const VI first_x = hn::Sub(x, hn::Iota(d, 0));
-    hn::Store(first_x, d, xs), hn::Store(y, d, ys);
-    const auto take = [&](Mask of, Run& run) {
-      const int lane = first_true(of);
-      run = {xs[lane], ys[lane]};
-      return hn::And(of, float_mask(hn::And(hn::Eq(first_x, set_int(run.x)), hn::Eq(y, set_int(run.y)))));
-    };
-    in_first_ = take(active, first_);
-    second_ = first_;
-    const Mask others = hn::AndNot(in_first_, active);
-    if (hn::AllFalse(D(), others)) return;
-    is_one_ = false;
-    is_scattered_ = !hn::AllFalse(D(), hn::AndNot(take(others, second_), others));
-  }
+// Sites are the pixels of the previous frame that the lanes' taps are relative to. What a site makes of a plane yields the value
+// of each lane's tap.
 
-  // Lanes whose tap lies in the image.
-  HWY_INLINE Mask inside(Offset tap, int width, int height) const {
-    const VI x = hn::Add(x_, set_int(tap.dx)), y = hn::Add(y_, set_int(tap.dy)), before = set_int(-1);
-    return float_mask(
-        hn::And(hn::And(hn::Gt(x, before), hn::Lt(x, set_int(width))), hn::And(hn::Gt(y, before), hn::Lt(y, set_int(height)))));
-  }
+// One run or two, of which all taps lie in the image.
+template <int kRuns>
+struct RunSite {
+  Run first, second;
+  Mask in_first;
 
-  // The values of lanes whose tap lies in the image; others are anything.
+  template <class T>
+  struct Plane {
+    const T *first, *second;
+    std::ptrdiff_t row_stride;
+    Mask in_first;
+    HWY_INLINE auto operator()(Offset tap) const {
+      const Tag<T> d;
+      const std::ptrdiff_t way = tap.dy * row_stride + tap.dx;
+      if constexpr (kRuns == 1) return hn::LoadU(d, first + way);
+      return hn::IfThenElse(hn::RebindMask(d, in_first), hn::LoadU(d, first + way), hn::LoadU(d, second + way));
+    }
+  };
   template <class Image, class T>
-  HWY_INLINE auto read(const Image& image, const T* plane, Offset tap) const {
-    using DT = std::conditional_t<std::is_same_v<T, float>, D, DU>;
-    const DT d;
-    const std::ptrdiff_t first = offset(image, first_, tap), second = offset(image, second_, tap);
-    // A vector may reach over the end of a row, not begin behind it.
-    const std::ptrdiff_t end = (image.height - 1) * image.row_stride + image.width;
-    if (HWY_UNLIKELY(is_scattered_ || first < 0 || second < 0 || first >= end || second >= end))
-      return read_each(d, image, plane, tap);
-    const auto run = hn::LoadU(d, plane + first);
-    return is_one_ ? run : hn::IfThenElse(hn::RebindMask(d, in_first_), run, hn::LoadU(d, plane + second));
+  HWY_INLINE Plane<T> plane(const Image& image, const T* at) const {
+    return {at + first.y * image.row_stride + first.x, at + second.y * image.row_stride + second.x, image.row_stride, in_first};
   }
-
- private:
-  template <class Image>
-  static HWY_INLINE std::ptrdiff_t offset(const Image& image, const Run& run, Offset tap) {
-    return (run.y + tap.dy) * image.row_stride + run.x + tap.dx;
-  }
-
-  template <class DT, class Image, class T>
-  HWY_INLINE hn::Vec<DT> read_each(DT d, const Image& image, const T* plane, Offset tap) const {
-    const DI di;
-    const auto clamp = [&](VI v, int size) { return hn::Min(hn::Max(v, hn::Zero(di)), set_int(size - 1)); };
-    const VI x = clamp(hn::Add(x_, set_int(tap.dx)), image.width), y = clamp(hn::Add(y_, set_int(tap.dy)), image.height);
-    if (HWY_LIKELY(image.height * image.row_stride <= std::numeric_limits<std::int32_t>::max()))
-      return hn::GatherIndex(d, plane, hn::Add(hn::Mul(y, set_int(static_cast<int>(image.row_stride))), x));
-    HWY_ALIGN int xs[kMaxLanes], ys[kMaxLanes];
-    HWY_ALIGN T values[kMaxLanes];
-    hn::Store(x, di, xs), hn::Store(y, di, ys);
-    for (int i = 0; i < lanes(); ++i) values[i] = plane[ys[i] * image.row_stride + xs[i]];
-    return hn::Load(d, values);
-  }
-
-  VI x_, y_;
-  Run first_, second_;
-  Mask in_first_;
-  bool is_one_ = true, is_scattered_ = false;
+  HWY_INLINE Mask inside(Mask of, Offset, int, int) const { return of; }
 };
 
-template <class Image>
-HWY_INLINE V3 read3(const Site& site, const Image& image, Offset tap) {
-  return {site.read(image, image.row(0, 0), tap), site.read(image, image.row(0, 1), tap), site.read(image, image.row(0, 2), tap)};
+// Pixels anywhere. Of taps outside of the image the value is that of some pixel.
+struct ScatteredSite {
+  VI x, y;
+
+  template <class T>
+  struct Plane {
+    VI x, y;
+    const T* at;
+    int width, height;
+    std::ptrdiff_t row_stride;
+    HWY_INLINE auto operator()(Offset tap) const {
+      const DI di;
+      const Tag<T> d;
+      const auto clamp = [&](VI v, int size) { return hn::Min(hn::Max(v, hn::Zero(di)), set_int(size - 1)); };
+      const VI tap_x = clamp(hn::Add(x, set_int(tap.dx)), width), tap_y = clamp(hn::Add(y, set_int(tap.dy)), height);
+      if (HWY_LIKELY(height * row_stride <= std::numeric_limits<std::int32_t>::max()))
+        return hn::GatherIndex(d, at, hn::Add(hn::Mul(tap_y, set_int(static_cast<int>(row_stride))), tap_x));
+      HWY_ALIGN int xs[kMaxLanes], ys[kMaxLanes];
+      HWY_ALIGN T values[kMaxLanes];
+      hn::Store(tap_x, di, xs), hn::Store(tap_y, di, ys);
+      for (int i = 0; i < lanes(); ++i) values[i] = at[ys[i] * row_stride + xs[i]];
+      return hn::Load(d, values);
+    }
+  };
+  template <class Image, class T>
+  HWY_INLINE Plane<T> plane(const Image& image, const T* at) const {
+    return {x, y, at, image.width, image.height, image.row_stride};
+  }
+  // Lanes of `of` whose tap lies in the image.
+  HWY_INLINE Mask inside(Mask of, Offset tap, int width, int height) const {
+    const VI tap_x = hn::Add(x, set_int(tap.dx)), tap_y = hn::Add(y, set_int(tap.dy)), before = set_int(-1);
+    of = hn::And(of, float_mask(hn::And(hn::Gt(tap_x, before), hn::Lt(tap_x, set_int(width)))));
+    return hn::And(of, float_mask(hn::And(hn::Gt(tap_y, before), hn::Lt(tap_y, set_int(height)))));
+  }
+};
+
+// Calls with_site for the site at (x, y). Lanes that are not `active` may be anywhere.
+template <const auto& kOffsets, class WithSite>
+HWY_INLINE void at_site(VI x, VI y, Mask active, int width, int height, const WithSite& with_site) {
+  constexpr int kLeft = std::ranges::min(kOffsets, {}, &Offset::dx).dx, kRight = std::ranges::max(kOffsets, {}, &Offset::dx).dx;
+  constexpr int kAbove = std::ranges::min(kOffsets, {}, &Offset::dy).dy, kBelow = std::ranges::max(kOffsets, {}, &Offset::dy).dy;
+  const VI first_x = hn::Sub(x, hn::Iota(DI(), 0));
+  const auto run_of = [&](Mask of) {
+    const auto mask = hn::RebindMask(DI(), of);
+    return Run{hn::GetLane(hn::Compress(first_x, mask)), hn::GetLane(hn::Compress(y, mask))};
+  };
+  const auto in_run = [&](Run run) { return float_mask(hn::And(hn::Eq(first_x, set_int(run.x)), hn::Eq(y, set_int(run.y)))); };
+  const auto is_inside = [&](Run run) {
+    return run.x + kLeft >= 0 && run.x + lanes() - 1 + kRight < width && run.y + kAbove >= 0 && run.y + kBelow < height;
+  };
+  const D d;
+  const Run first = run_of(active);
+  const Mask in_first = in_run(first), others = hn::AndNot(in_first, active);
+  if (HWY_LIKELY(is_inside(first))) {
+    if (hn::AllFalse(d, others)) return with_site(RunSite<1>{first, first, in_first});
+    const Run second = run_of(others);
+    if (is_inside(second) && hn::AllFalse(d, hn::AndNot(in_run(second), others)))
+      return with_site(RunSite<2>{first, second, in_first});
+  }
+  with_site(ScatteredSite{x, y});
 }
 
 // Pixels from (x, y) on.
@@ -153,25 +172,44 @@ class Tests {
     if (tests_plane_) position_ = pixels3(in.position, x, y);
   }
 
-  // Lanes of `of` whose tap passes. What is not a number fails.
-  HWY_INLINE Mask passing(Mask of, const Site& site, Offset tap) const {
-    if (tests_id_) of = hn::And(of, hn::RebindMask(D(), hn::Eq(site.read(in_.previous_id, in_.previous_id.row(0), tap), id_)));
+  // Leaves of passes[i] the lanes whose tap i passes. What is not a number fails.
+  template <const auto& kOffsets, class Site>
+  HWY_INLINE void test(const Site& site, Mask* passes) const {
+    constexpr std::size_t kCount = std::size(kOffsets);
+    if (tests_id_) {
+      const auto id = site.plane(in_.previous_id, in_.previous_id.row(0));
+      for (std::size_t i = 0; i < kCount; ++i) passes[i] = hn::And(passes[i], hn::RebindMask(D(), hn::Eq(id(kOffsets[i]), id_)));
+    }
     if (tests_depth_) {
-      const V depth = site.read(in_.previous_depth, in_.previous_depth.row(0), tap);
-      of = hn::And(of, hn::Le(hn::Abs(hn::Sub(depth, depth_)), depth_tolerance_));
+      const auto depth = site.plane(in_.previous_depth, in_.previous_depth.row(0));
+      for (std::size_t i = 0; i < kCount; ++i)
+        passes[i] = hn::And(passes[i], hn::Le(hn::Abs(hn::Sub(depth(kOffsets[i]), depth_)), depth_tolerance_));
     }
     if (tests_normal_) {
-      const V3 turn = sub(normal_, read3(site, in_.previous_normal, tap));
-      of = hn::And(of, hn::Le(dot(turn, turn), squared_turn_));
+      const Planes<Site> normal(site, in_.previous_normal);
+      for (std::size_t i = 0; i < kCount; ++i) {
+        const V3 turn = sub(normal_, normal(kOffsets[i]));
+        passes[i] = hn::And(passes[i], hn::Le(dot(turn, turn), squared_turn_));
+      }
     }
     if (tests_plane_) {
-      const V height = dot(normal_, sub(position_, read3(site, in_.previous_position, tap)));
-      of = hn::And(of, hn::Le(hn::Abs(height), plane_tolerance_));
+      const Planes<Site> position(site, in_.previous_position);
+      for (std::size_t i = 0; i < kCount; ++i) {
+        const V height = dot(normal_, sub(position_, position(kOffsets[i])));
+        passes[i] = hn::And(passes[i], hn::Le(hn::Abs(height), plane_tolerance_));
+      }
     }
-    return of;
   }
 
  private:
+  template <class Site>
+  struct Planes {
+    typename Site::template Plane<float> x, y, z;
+    HWY_INLINE Planes(const Site& site, const FloatImage& image)
+        : x(site.plane(image, image.row(0, 0))), y(site.plane(image, image.row(0, 1))), z(site.plane(image, image.row(0, 2))) {}
+    HWY_INLINE V3 operator()(Offset tap) const { return {x(tap), y(tap), z(tap)}; }
+  };
+
   const Images& in_;
   bool tests_id_, tests_depth_, tests_normal_, tests_plane_;
   hn::Vec<DU> id_ = hn::Zero(DU());
@@ -179,27 +217,33 @@ class Tests {
   V3 normal_{zero(), zero(), zero()}, position_{zero(), zero(), zero()};
 };
 
-// Each lane's taps at kOffsets from its pixel of `site`.
-template <const auto& kOffsets>
-struct Taps {
+// Each lane's taps at kOffsets from its pixel of `site`; whoever makes them gives the weights.
+template <const auto& kOffsets, class Site>
+class Taps {
+ public:
   static constexpr int kCount = static_cast<int>(std::size(kOffsets));
-  const Site& site;
   V weight[kCount];
-  Mask passes[kCount];
-  V left = zero(), failed = zero();  // sums of weights
-  Mask all, any;                     // lanes whose taps pass
+  V left, failed;  // sums of weights
+  Mask all, any;   // lanes whose taps pass
+
+  HWY_INLINE explicit Taps(const Site& site) : site_(site) {}
 
   // Only taps with a weight above 0 count.
   HWY_INLINE void test(const Tests& tests, Mask active, int width, int height) {
-    all = active, any = hn::Lt(zero(), zero());
+    Mask counts[kCount];
     for (int i = 0; i < kCount; ++i) {
-      const Mask counts = hn::And(active, hn::Ne(weight[i], zero()));
-      passes[i] = tests.passing(hn::And(counts, site.inside(kOffsets[i], width, height)), site, kOffsets[i]);
-      const Mask fails = hn::AndNot(passes[i], counts);
+      counts[i] = hn::And(active, hn::Ne(weight[i], zero()));
+      passes_[i] = site_.inside(counts[i], kOffsets[i], width, height);
+    }
+    tests.test<kOffsets>(site_, passes_);
+    all = active, any = hn::Lt(zero(), zero());
+    left = failed = zero();
+    for (int i = 0; i < kCount; ++i) {
+      const Mask fails = hn::AndNot(passes_[i], counts[i]);
       failed = hn::Add(failed, hn::IfThenElseZero(fails, weight[i]));
       all = hn::AndNot(fails, all);
-      any = hn::Or(any, passes[i]);
-      weight[i] = hn::IfThenElseZero(passes[i], weight[i]);
+      any = hn::Or(any, passes_[i]);
+      weight[i] = hn::IfThenElseZero(passes_[i], weight[i]);
       left = hn::Add(left, weight[i]);
     }
   }
@@ -208,20 +252,25 @@ struct Taps {
     for (V& w : weight) w = hn::Mul(w, scale);
   }
 
-  HWY_INLINE V fetch(const FloatImage& image, const float* plane) const {
+  HWY_INLINE V fetch(const FloatImage& image, const float* at) const {
+    const auto plane = site_.plane(image, at);
     V values[kCount];
-    for (int i = 0; i < kCount; ++i) values[i] = site.read(image, plane, kOffsets[i]);
+    for (int i = 0; i < kCount; ++i) values[i] = plane(kOffsets[i]);
     V base = values[kCount - 1];
-    for (int i = kCount - 2; i >= 0; --i) base = hn::IfThenElse(passes[i], values[i], base);
+    for (int i = kCount - 2; i >= 0; --i) base = hn::IfThenElse(passes_[i], values[i], base);
     if constexpr (kCount == 1) return base;
     V way = zero();
-    for (int i = 0; i < kCount; ++i) way = hn::MulAdd(weight[i], hn::IfThenElseZero(passes[i], hn::Sub(values[i], base)), way);
+    for (int i = 0; i < kCount; ++i) way = hn::MulAdd(weight[i], hn::IfThenElseZero(passes_[i], hn::Sub(values[i], base)), way);
     V result = hn::Add(base, way);
     if constexpr (kCount == std::size(kSixteen))
       result = hn::Clamp(result, hn::Min(hn::Min(values[0], values[1]), hn::Min(values[2], values[3])),
                          hn::Max(hn::Max(values[0], values[1]), hn::Max(values[2], values[3])));
     return result;
   }
+
+ private:
+  const Site& site_;
+  Mask passes_[kCount];
 };
 
 // Where the point lies: the pixel above and to the left of it, by centers, and how far behind that.
@@ -282,6 +331,17 @@ HWY_INLINE void store_history(const Pixels& at, Mask is_valid, std::span<const M
       store(hn::IfThenElseZero(is_valid, fetch(image.from, image.from.row(0, c))), at.count, image.to.row(at.y, c) + at.x);
 }
 
+// Stores the same over that, in the rescued lanes alone.
+template <class Fetched>
+HWY_INLINE void store_rescued(const Pixels& at, Mask is_rescued, std::span<const Moved> history, const FloatOutput& valid,
+                              const Fetched& fetch) {
+  const auto store_over = [&](V v, float* to) { store(hn::IfThenElse(is_rescued, v, hn::LoadU(D(), to)), at.count, to); };
+  store_over(set(1.0F), valid.row(at.y) + at.x);
+  for (const Moved& image : history)
+    for (int c = 0; image.to && c < image.to.channels; ++c)
+      store_over(fetch(image.from, image.from.row(0, c)), image.to.row(at.y, c) + at.x);
+}
+
 // Lanes of `active` fetch by the taps `found`, or, where `is_better`, what `better` makes of that; the window around point p
 // rescues those that have too little weight left.
 template <class AnyTaps, class Better>
@@ -295,16 +355,18 @@ HWY_INLINE void fetch_pixels(const Settings& s, const Pixels& at, std::span<cons
   const Mask enough = hn::And(found.any, hn::Ge(found.left, set(s.min_weight)));
   found.normalize();
   const Mask is_found = hn::Or(enough, is_better);
-  const auto fetch = [&](const FloatImage& image, const float* plane) { return better(image, plane, found.fetch(image, plane)); };
+  store_history(at, is_found, history, valid,
+                [&](const FloatImage& image, const float* plane) { return better(image, plane, found.fetch(image, plane)); });
   const Mask lost = hn::AndNot(is_found, active);
-  if (!s.rescue || hn::AllFalse(d, lost)) return store_history(at, is_found, history, valid, fetch);
-  const Site site(nearest<false>(p.x, p.fx), nearest<false>(p.y, p.fy), lost);
-  Taps<kWindow> window{.site = site};
-  for (V& w : window.weight) w = set(1.0F);
-  window.test(tests, lost, width, height);
-  window.normalize();
-  store_history(at, hn::Or(is_found, window.any), history, valid, [&](const FloatImage& image, const float* plane) {
-    return hn::IfThenElse(window.any, window.fetch(image, plane), fetch(image, plane));
+  if (!s.rescue || hn::AllFalse(d, lost)) return;
+  at_site<kWindow>(nearest<false>(p.x, p.fx), nearest<false>(p.y, p.fy), lost, width, height, [&](const auto& site) {
+    Taps<kWindow, std::decay_t<decltype(site)>> window(site);
+    for (V& w : window.weight) w = set(1.0F);
+    window.test(tests, lost, width, height);
+    if (hn::AllFalse(d, window.any)) return;
+    window.normalize();
+    store_rescued(at, window.any, history, valid,
+                  [&](const FloatImage& image, const float* plane) { return window.fetch(image, plane); });
   });
 }
 
@@ -328,19 +390,27 @@ HWY_INLINE void reproject_pixels(const Images& in, const Settings& s, const Pixe
   const auto no_better = [](const FloatImage&, const float*, V own) { return own; };
   if constexpr (kFetch == Fetch::nearest || kFetch == Fetch::truncate) {
     constexpr bool kTruncates = kFetch == Fetch::truncate;
-    const Site site(nearest<kTruncates>(p.x, p.fx), nearest<kTruncates>(p.y, p.fy), active);
-    Taps<kPoint> taps{.site = site, .weight = {set(1.0F)}};
-    taps.test(tests, active, width, height);
-    fetch_pixels(s, at, history, valid, rejected, tests, active, p, taps, none, no_better);
-  } else {
-    const Site site(p.x, p.y, active);
-    Taps<kFour> taps{.site = site};
-    bilinear_weights(p, taps.weight);
-    taps.test(tests, active, width, height);
-    if constexpr (kFetch == Fetch::bilinear) {
+    const VI x = nearest<kTruncates>(p.x, p.fx), y = nearest<kTruncates>(p.y, p.fy);
+    at_site<kPoint>(x, y, active, width, height, [&](const auto& site) {
+      Taps<kPoint, std::decay_t<decltype(site)>> taps(site);
+      taps.weight[0] = set(1.0F);
+      taps.test(tests, active, width, height);
       fetch_pixels(s, at, history, valid, rejected, tests, active, p, taps, none, no_better);
-    } else {
-      Taps<kSixteen> sixteen{.site = site};
+    });
+  } else if constexpr (kFetch == Fetch::bilinear) {
+    at_site<kFour>(p.x, p.y, active, width, height, [&](const auto& site) {
+      Taps<kFour, std::decay_t<decltype(site)>> taps(site);
+      bilinear_weights(p, taps.weight);
+      taps.test(tests, active, width, height);
+      fetch_pixels(s, at, history, valid, rejected, tests, active, p, taps, none, no_better);
+    });
+  } else {
+    at_site<kSixteen>(p.x, p.y, active, width, height, [&](const auto& site) {
+      using Site = std::decay_t<decltype(site)>;
+      Taps<kFour, Site> taps(site);
+      bilinear_weights(p, taps.weight);
+      taps.test(tests, active, width, height);
+      Taps<kSixteen, Site> sixteen(site);
       for (V& w : sixteen.weight) w = set(1.0F);  // a tap without weight must pass, too
       sixteen.test(tests, active, width, height);
       catmull_rom_weights(p, sixteen.weight);
@@ -348,7 +418,7 @@ HWY_INLINE void reproject_pixels(const Images& in, const Settings& s, const Pixe
         return hn::IfThenElse(sixteen.all, sixteen.fetch(image, plane), own);
       };
       fetch_pixels(s, at, history, valid, rejected, tests, active, p, taps, sixteen.all, better);
-    }
+    });
   }
 }
 
