@@ -180,18 +180,15 @@ class Tests {
     constexpr std::size_t kCount = std::size(kOffsets);
     if (tests_id_) {
       const auto id = site.plane(in_.previous_id, in_.previous_id.row(0));
-#pragma GCC unroll 4
       for (std::size_t i = 0; i < kCount; ++i) passes[i] = hn::And(passes[i], hn::RebindMask(D(), hn::Eq(id(kOffsets[i]), id_)));
     }
     if (tests_depth_) {
       const auto depth = site.plane(in_.previous_depth, in_.previous_depth.row(0));
-#pragma GCC unroll 4
       for (std::size_t i = 0; i < kCount; ++i)
         passes[i] = hn::And(passes[i], hn::Le(hn::Abs(hn::Sub(depth(kOffsets[i]), depth_)), depth_tolerance_));
     }
     if (tests_normal_) {
       const Planes<Site> normal(site, in_.previous_normal);
-#pragma GCC unroll 4
       for (std::size_t i = 0; i < kCount; ++i) {
         const V3 turn = sub(normal_, normal(kOffsets[i]));
         passes[i] = hn::And(passes[i], hn::Le(dot(turn, turn), squared_turn_));
@@ -199,7 +196,6 @@ class Tests {
     }
     if (tests_plane_) {
       const Planes<Site> position(site, in_.previous_position);
-#pragma GCC unroll 4
       for (std::size_t i = 0; i < kCount; ++i) {
         const V height = dot(normal_, sub(position_, position(kOffsets[i])));
         passes[i] = hn::And(passes[i], hn::Le(hn::Abs(height), plane_tolerance_));
@@ -237,7 +233,6 @@ class Taps {
   // Only taps with a weight above 0 count.
   HWY_INLINE void test(const Tests& tests, Mask active, int width, int height) {
     Mask counts[kCount];
-#pragma GCC unroll 4
     for (int i = 0; i < kCount; ++i) {
       counts[i] = hn::And(active, hn::Ne(weight[i], zero()));
       passes_[i] = site_.inside(counts[i], kOffsets[i], width, height);
@@ -245,7 +240,6 @@ class Taps {
     tests.test<kOffsets>(site_, passes_);
     all = active, any = hn::Lt(zero(), zero());
     left = failed = zero();
-#pragma GCC unroll 4
     for (int i = 0; i < kCount; ++i) {
       const Mask fails = hn::AndNot(passes_[i], counts[i]);
       failed = hn::Add(failed, hn::IfThenElseZero(fails, weight[i]));
@@ -257,21 +251,17 @@ class Taps {
   }
   HWY_INLINE void normalize() {
     const V scale = hn::Div(set(1.0F), left);
-#pragma GCC unroll 4
     for (V& w : weight) w = hn::Mul(w, scale);
   }
 
   HWY_INLINE V fetch(const FloatImage& image, const float* at) const {
     const auto plane = site_.plane(image, at);
     V values[kCount];
-#pragma GCC unroll 4
     for (int i = 0; i < kCount; ++i) values[i] = plane(kOffsets[i]);
     V base = values[kCount - 1];
-#pragma GCC unroll 4
     for (int i = kCount - 2; i >= 0; --i) base = hn::IfThenElse(passes_[i], values[i], base);
     if constexpr (kCount == 1) return base;
     V way = zero();
-#pragma GCC unroll 4
     for (int i = 0; i < kCount; ++i) way = hn::MulAdd(weight[i], hn::IfThenElseZero(passes_[i], hn::Sub(values[i], base)), way);
     V result = hn::Add(base, way);
     if constexpr (kCount == std::size(kSixteen))
@@ -373,7 +363,6 @@ HWY_INLINE void fetch_pixels(const Settings& s, const Pixels& at, std::span<cons
   if (!s.rescue || hn::AllFalse(d, lost)) return;
   at_site<kWindow>(nearest<false>(p.x, p.fx), nearest<false>(p.y, p.fy), lost, width, height, [&](const auto& site) {
     Taps<kWindow, std::decay_t<decltype(site)>> window(site);
-#pragma GCC unroll 4
     for (V& w : window.weight) w = set(1.0F);
     window.test(tests, lost, width, height);
     if (hn::AllFalse(d, window.any)) return;
@@ -424,7 +413,6 @@ HWY_INLINE void reproject_pixels(const Images& in, const Settings& s, const Pixe
       bilinear_weights(p, taps.weight);
       taps.test(tests, active, width, height);
       Taps<kSixteen, Site> sixteen(site);
-#pragma GCC unroll 4
       for (V& w : sixteen.weight) w = set(1.0F);  // a tap without weight must pass, too
       sixteen.test(tests, active, width, height);
       catmull_rom_weights(p, sixteen.weight);
