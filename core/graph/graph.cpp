@@ -7,6 +7,7 @@
 #include "quell/graph/edits.h"
 #include "quell/graph/follow_type.h"
 #include "quell/graph/outside.h"
+#include "quell/graph/settings.h"
 #include "quell/graph/types.h"
 
 namespace quell {
@@ -45,6 +46,15 @@ std::vector<Endpoint> endpoints(const Graph& graph) {
     }
   }
   return result;
+}
+
+GraphParam describe_param(const std::string& name, const std::vector<detail::Settings::Slot>& slots, const Graph& graph) {
+  GraphParam param{name, {}};
+  for (const detail::Settings::Slot& slot : slots) {
+    const auto node = std::ranges::find(graph.nodes, slot.leaf->name, &Node::name);
+    if (node != graph.nodes.end()) param.sets.push_back({static_cast<int>(node - graph.nodes.begin()), slot.param});
+  }
+  return param;
 }
 
 }  // namespace
@@ -92,6 +102,8 @@ std::shared_ptr<const Graph> parse_graph(const SourceTextPtr& source, const Regi
   const std::vector<bool> left_out = detail::leave_out_absent(*unfolded, connections, errors);
   const std::shared_ptr<Graph> graph = detail::build(*unfolded, connections, left_out, errors);
   edits.throw_if_any();
+  for (const detail::WrittenParam& param : unfolded->root.document->params)
+    graph->params.push_back(describe_param(param.name.text, settings.set_by(param), *graph));
   graph->edits = edits.describe();
   for (const auto& [file, document] : unfolded->documents)
     if (document) graph->files.push_back(document->source->name);

@@ -70,6 +70,18 @@ struct GraphOutput {
   Position where;
 };
 
+/// A parameter of a node.
+struct NodeParam {
+  int node = 0;             ///< index into Graph::nodes
+  std::uint32_t param = 0;  ///< index into the pass's params
+};
+
+/// A parameter of the graph itself, and the parameters of nodes that it sets.
+struct GraphParam {
+  std::string name;
+  std::vector<NodeParam> sets;  ///< of nodes that are in the graph
+};
+
 struct Graph {
   std::string name;
   std::string doc;
@@ -77,6 +89,7 @@ struct Graph {
   std::vector<GraphInput> inputs;
   std::vector<Node> nodes;  ///< same-frame edges lead from earlier to later ones; ties in the order of the file
   std::vector<GraphOutput> outputs;
+  std::vector<GraphParam> params;
   std::vector<GraphOutput> subgraph_outputs;  ///< other names for some endpoints: "svgf.color"
   std::vector<std::filesystem::path> files;   ///< that it was read from: its own, then those of its subgraphs
   std::vector<std::string> edits;             ///< what GraphOptions changed, left out or replaced, for people; a line each

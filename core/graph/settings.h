@@ -27,12 +27,16 @@ class Settings {
   /// A setting from outside.
   void apply(const Setting& setting);
 
- private:
+  /// A parameter of a leaf.
   struct Slot {
     Leaf* leaf;
     std::uint32_t param;
     auto operator<=>(const Slot&) const = default;
   };
+  /// What a parameter of the graph itself sets, after apply_files().
+  std::vector<Slot> set_by(const WrittenParam& param) { return find_own(graph_.root, param.name, param.name.text); }
+
+ private:
   void apply_files(const Scope& scope);
   void apply_former_defaults(Leaf& leaf);
   void apply_node_params(const Scope& scope, const WrittenNode& node);

@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         WrongLine{{"rum"},
                   "error: there is no command 'rum'; did you mean 'run'?; the commands are 'run', 'check', 'inspect', 'compare', "
-                  "'graph', 'passes', 'schema' and 'new'\n"
+                  "'graph', 'passes', 'schema', 'tune' and 'new'\n"
                   "`quell --help` tells more"},
         WrongLine{{"--vesion"}, "error: there is no option '--vesion'; did you mean '--version'?\n`quell --help` tells more"},
         WrongLine{{"new", "pas"},

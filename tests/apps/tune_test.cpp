@@ -1,0 +1,157 @@
+// quell tune: what it finds, writes and says.
+#include <gmock/gmock.h>
+
+#include <csignal>
+#include <cstdlib>
+
+#include "quell/text/json.h"
+#include "tests/apps/compare_fixture.h"
+
+namespace quell::app::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class Tune : public CompareTest {
+ protected:
+  // The best gain is 3/4: color is (1/4, frame / 16, 1/2) and the reference 3/4 of it.
+  void make_scaled_shot(int count = 4) {
+    make_shot(count);
+    for (int frame = 1; frame <= count; ++frame) add_image("color", frame, 0.5F), add_image("reference", frame, 0.375F);
+  }
+  Outcome tune(std::vector<std::string> options, const std::string& params = R"({ "gain": 2 })") {
+    std::vector<std::string> arguments = {"tune", make_graph(params), text("shot"), "--params", "scale.gain"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run(arguments);
+  }
+  double found(const char* name) const {
+    Diagnostics errors;
+    const auto source = std::make_shared<SourceText>(SourceText{"found", read_file(path("found.json"))});
+    return parse_json(source, errors)->find(name)->number;
+  }
+};
+
+TEST_F(Tune, FindsTheGainThatMakesTheReference) {
+  make_scaled_shot();
+  for (const char* metric : {"psnr", "mse", "relmse", "smape"}) {
+    const Outcome outcome = tune({"--metric", metric, "-o", text("found.json"), "--evaluations", "80"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NEAR(found("scale.gain"), 0.75, 0.003) << metric;
+  }
+}
+
+TEST_F(Tune, WritesWhatRunTakes) {
+  make_scaled_shot();
+  ASSERT_EQ(tune({"--metric", "mse", "-o", text("found.json"), "-q"}).code, 0);
+  const std::string graph = make_graph(R"({ "gain": 2 })");
+  EXPECT_EQ(run({"run", graph, text("shot"), "-o", text("tuned"), "--params", text("found.json"), "--type", "float", "-q"}).code,
+            0);
+  const Json figures = compare_json({"shot", "tuned"}, {"--metrics", "mse"});
+  EXPECT_LT(figure(figures, "mse").number, 1e-5);
+}
+
+TEST_F(Tune, ReportsOnTheFramesThatWereHeldOut) {
+  make_scaled_shot(5);
+  const Outcome outcome = tune({"--metric", "mse", "--evaluations", "40"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("searching scale.gain on frames 1-3; frames 4-5 held out, 40 evaluations\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("\n  mse, frames 1-3 "));
+  EXPECT_THAT(outcome.err, HasSubstr("\n  mse, held-out frames 4-5 "));
+  EXPECT_THAT(outcome.out, HasSubstr("{ \"scale.gain\": 0.7")) << "without --out, what is found is printed, and nothing else";
+}
+
+TEST_F(Tune, WarnsWhereWhatItFoundHoldsForItsFramesAlone) {
+  make_scaled_shot(4);
+  for (int frame = 3; frame <= 4; ++frame) add_image("reference", frame, 1);
+  EXPECT_THAT(tune({"--metric", "mse", "-q"}).err,
+              HasSubstr("warning: on the frames that were held out, the tuned values are worse"));
+  EXPECT_THAT(tune({"--metric", "mse", "-q", "--held-out", "none"}).err, Not(HasSubstr("held out")));
+}
+
+TEST_F(Tune, SaysWhatItWouldDo) {
+  make_scaled_shot();
+  const Outcome outcome = tune({"--dry-run", "--range", "scale.gain=0..1"}, R"({ "gain": 0.5 })");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("would search, by mixed, against " + text("shot/reference.####.exr")));
+  EXPECT_THAT(outcome.out, HasSubstr("0..1"));
+}
+
+TEST_F(Tune, RefusesWhatItCannotSearch) {
+  make_scaled_shot();
+  const std::string graph = make_graph(R"({ "gain": 0 })");
+  const auto error = [&](std::vector<std::string> options) {
+    std::vector<std::string> arguments = {"tune", graph, text("shot"), "-q"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(error({"--params", "scale.gian"}),
+              HasSubstr("--params: the graph 'small' has no parameter 'scale.gian'; did you mean"));
+  EXPECT_THAT(error({"--params", "scale.gain"}),
+              HasSubstr("is 0, which does not say where to search; add --range scale.gain=LOW..HIGH"));
+  EXPECT_THAT(error({"--params", "scale.gain,scale.gain", "--range", "scale.gain=0..1"}), HasSubstr("stands there twice"));
+  EXPECT_THAT(error({"--params", "scale.gain", "--range", "scale.gain=1..0"}),
+              HasSubstr("is not a range; write PARAM=LOW..HIGH"));
+  EXPECT_THAT(error({"--params", "scale.gain", "--range", "scale.gain=-1..1"}), HasSubstr("'scale.gain' goes from 0..1e+09"));
+  EXPECT_THAT(error({"--params", "scale.gain", "--range", "scale.gain=0..1", "--range", "x=0..1"}),
+              HasSubstr("'x' is not among those"));
+  EXPECT_THAT(error({"--params", "scale.gain", "--range", "scale.gain=0..1", "--metric", "tpsnr"}),
+              HasSubstr("--metric: 'tpsnr' cannot be searched by"));
+}
+
+TEST_F(Tune, KeepsTheBestWhenItIsInterrupted) {
+  make_scaled_shot();
+  const std::string graph = make_graph(R"({ "gain": 2 })");
+  Program program({"tune", graph, text("shot"), "--params", "scale.gain", "--metric", "mse", "--evaluations", "1000000", "-o",
+                   text("found.json"), "--range", "scale.gain=0..1e9", "--plugin-path", TEST_PLUGINS});
+  ASSERT_TRUE(program.wait_for_error_text("\nstart: "));
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  // It may have ended before the signal came.
+  if (outcome.code == 0) GTEST_SKIP() << "the search was faster than the signal";
+  EXPECT_EQ(outcome.code, 75) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("the best of them are kept"));
+  EXPECT_LE(found("scale.gain"), 2);
+}
+
+// What the issue asks of it: a parameter that is deliberately wrong, on a part of the sample.
+TEST_F(Tune, BringsAWrongParameterBack) {
+  const auto mse = [&](const char* sigma) {
+    const Outcome outcome = quell({"tune",
+                                   "svgf",
+                                   QUELL_SOURCE_DIR "/graphs/sample",
+                                   "--crop",
+                                   "100,60,96,64",
+                                   "--frames",
+                                   "1-4",
+                                   "--held-out",
+                                   "none",
+                                   "--params",
+                                   "sigma_l",
+                                   "--range",
+                                   "sigma_l=0.1..200",
+                                   "--metric",
+                                   "relmse",
+                                   "--set",
+                                   std::string("sigma_l=") + sigma,
+                                   "--evaluations",
+                                   "30",
+                                   "-o",
+                                   text("found.json")});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    // "relmse, frames 1-4    0.0531    0.0402": the last number of the line.
+    const std::size_t line = outcome.out.find("relmse, frames 1-4");
+    if (line == std::string::npos) ADD_FAILURE() << outcome.out;
+    const std::string row = outcome.out.substr(line, outcome.out.find('\n', line) - line);
+    return std::strtod(row.substr(row.find_last_of(' ')).c_str(), nullptr);
+  };
+  const double tuned = mse("4");
+  EXPECT_GT(tuned, 0);
+  EXPECT_LE(mse("0.2"), 1.02 * tuned);
+  EXPECT_LE(mse("150"), 1.02 * tuned);
+}
+
+}  // namespace
+}  // namespace quell::app::testing
