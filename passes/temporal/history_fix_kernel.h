@@ -10,8 +10,8 @@ namespace quell::history_fix {
 
 inline constexpr int kTapsAside = 2;  // in each direction
 
-/// Images of one size. All but the length may be absent; depth is compared where it has a gradient, planes where there is a normal
-/// and a position.
+/// Images of one size. All but the length may be absent; depth is compared where it has a gradient, planes where there is a
+/// normal and a position.
 struct Guides {
   FloatImage length, depth, depth_gradient, normal, position;
   IdImage id;

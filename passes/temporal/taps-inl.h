@@ -1,5 +1,5 @@
-// Vectors of pixels around a vector of pixels, straight from images that end: what windows of small or changing reach are read by.
-// Included once for every vector unit, after hwy/foreach_target.h.
+// Vectors of pixels around a vector of pixels, straight from images that end: what windows of small or changing reach are read
+// by. Included once for every vector unit, after hwy/foreach_target.h.
 #if defined(QUELL_TEMPORAL_TAPS) == defined(HWY_TARGET_TOGGLE)
 #ifdef QUELL_TEMPORAL_TAPS
 #undef QUELL_TEMPORAL_TAPS
@@ -83,7 +83,8 @@ HWY_INLINE V3 rgb(V3 ycocg) {
 
 // Sums of differences to a value of the window, so that nothing cancels: mean and deviation relative to that value.
 struct Spread {
-  V first = zero(), second = zero();
+  V first, second;
+  HWY_INLINE Spread() : first(zero()), second(zero()) {}  // said, since what the compiler makes is of no vector unit
   HWY_INLINE void add(Mask counts, V difference) {
     difference = hn::IfThenElseZero(counts, difference);
     first = hn::Add(first, difference);

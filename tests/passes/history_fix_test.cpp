@@ -55,8 +55,7 @@ double weight(const Case& c, int x, int y, int qx, int qy) {
   double w = 1;
   if (c.has("normal")) w = std::pow(std::max(product(scene::normal, x, y, scene::normal, qx, qy), 0.0), c.sigma_n);
   if (c.has("normal") && c.has("position")) {
-    const double height =
-        product(scene::normal, x, y, position, qx, qy) - product(scene::normal, x, y, position, x, y);
+    const double height = product(scene::normal, x, y, position, qx, qy) - product(scene::normal, x, y, position, x, y);
     const double tolerance = c.plane_relative * (c.has("depth") ? scene::depth(x, y, 0) : 0) + c.plane_absolute;
     return std::abs(height) <= tolerance ? w : 0;
   }
@@ -82,8 +81,8 @@ double expected(const Case& c, const Plane& image, int x, int y, int channel) {
   return stride > 0 ? sum / weights : own;
 }
 
-// A weight errs by 4e-6 (2^x) and a few roundings of its exponent, the logarithm's times a power of up to 40 among them; a mean of
-// values up to 5 by twice that.
+// A weight errs by 4e-6 (2^x) and a few roundings of its exponent, the logarithm's times a power of up to 40 among them; a mean
+// of values up to 5 by twice that.
 TEST(HistoryFix, EqualsItsFormulaInDouble) {
   const std::array<Case, 9> cases{Case{},
                                   {.without = {"position"}},
@@ -104,11 +103,10 @@ TEST(HistoryFix, EqualsItsFormulaInDouble) {
           ASSERT_NEAR(pass.output("image", 0).at(x, y, c), expected(cases[i], scene::color, x, y, c), 5e-5)
               << "case " << i << " at " << x << "," << y;
         for (int c = 0; c < 2; ++c)
-          ASSERT_NEAR(
-              pass.output("image", 1).at(x, y, c),
-              expected(
-                  cases[i], [](int px, int py, int k) { return scene::other_color(px, py, k + 1); }, x, y, c),
-              5e-5)
+          ASSERT_NEAR(pass.output("image", 1).at(x, y, c),
+                      expected(
+                          cases[i], [](int px, int py, int k) { return scene::other_color(px, py, k + 1); }, x, y, c),
+                      5e-5)
               << "case " << i << " at " << x << "," << y;
         changed += pass.output("image", 0).at(x, y) != scene::color(x, y, 0) ? 1 : 0;
       }
@@ -153,7 +151,8 @@ TEST(HistoryFix, NeverCrossesARightAngleCreaseOrABoundaryOfObjects) {
     pass->input("image", test_image(QUELL_TYPE_COLOR, kSize, half));
     pass->input("length", test_image(QUELL_TYPE_SCALAR, kSize, [](int, int, int) { return 1.0F; }));
   }
-  crease.input("normal", test_image(QUELL_TYPE_NORMAL, kSize, [](int x, int, int c) { return c == (x < 18 ? 0 : 2) ? 1.0F : 0.0F; }));
+  crease.input("normal",
+               test_image(QUELL_TYPE_NORMAL, kSize, [](int x, int, int c) { return c == (x < 18 ? 0 : 2) ? 1.0F : 0.0F; }));
   objects.input_ids("id", kSize, [](int x, int) { return x < 18 ? 3U : 4U; });
   for (PassTest* pass : {&crease, &objects}) {
     pass->run();
