@@ -110,6 +110,7 @@ typedef struct quell_port {
 
 #define QUELL_PORT_OPTIONAL 1u  // input: may be unconnected, and may be absent in a frame
 #define QUELL_PORT_ARRAY 2u     // input: a list of sources; output: as many items as the input array `same_as`
+#define QUELL_PORT_ANY_SIZE 4u  // input: images of it may have another size than those of the other inputs; infer is told which
 
 typedef struct quell_port_desc {
   uint32_t struct_size;
