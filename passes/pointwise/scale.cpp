@@ -49,7 +49,7 @@ const PassInfo kInfo{
         "the full guides and z', n' of the small ones; guides of which one is absent are left out. Where the size of the full "
         "guides is not twice that of the image, or one less, coordinates are scaled by the quotient of the sizes. The small "
         "guides are best made by this pass from the full ones.\n\n"
-        "Motion is in pixels and is halved or doubled with them. A variance is averaged as any number: that of the mean of four "
+        "Motion is in pixels and is scaled with them. A variance is averaged as any number: that of the mean of four "
         "independent pixels is a quarter of it.",
     .source =
         "Kopf et al., \"Joint Bilateral Upsampling\", SIGGRAPH 2007, section 3. Departs: a bilinear tent of four taps as the "
@@ -106,15 +106,29 @@ class Scale final : public Pass {
     const quell_type type = frame.type("image");
     const bool is_averaged = type != QUELL_TYPE_ID && (p_.method == Method::average ||
                                                        (p_.method == Method::by_type && (QUELL_TYPE_BIT(type) & kAveraged)));
-    const float gain = type != QUELL_TYPE_MOTION ? 1.0F : p_.to == To::half ? 0.5F : 2.0F;
-    if (!is_averaged) return with_image(frame, [&](const auto& in, const auto& out) { pick_nearest(frame, in, out, gain); });
-    if (p_.to == To::half)
-      halve(frame, gain);
-    else
-      enlarge(frame, gain);
+    with_image(frame, [&](const auto& in, const auto& out) {
+      const Gains gains = find_gains(type, in.width, in.height, out.width, out.height);
+      if (!is_averaged)
+        pick_nearest(frame, in, out, gains);
+      else if (p_.to == To::half)
+        halve(frame, gains);
+      else
+        enlarge(frame, gains);
+    });
   }
 
  private:
+  // Of the first plane, and of all others: motion is in pixels.
+  struct Gains {
+    float first, others;
+    float of(int c) const { return c == 0 ? first : others; }
+  };
+  Gains find_gains(quell_type type, int width, int height, int new_width, int new_height) const {
+    if (type != QUELL_TYPE_MOTION) return {1, 1};
+    if (p_.to == To::half) return {0.5F, 0.5F};
+    return {1 / factor(width, new_width), 1 / factor(height, new_height)};
+  }
+
   static Size full_size(const Inference& inference) {
     const Size small = inference.size("image");
     Size full{2 * small.width, 2 * small.height};
@@ -136,7 +150,7 @@ class Scale final : public Pass {
 
   // Upper left pixels of 2 x 2, or pixels that contain the centers of new ones.
   template <class In, class Out>
-  void pick_nearest(const Frame& frame, const In& in, const Out& out, float gain) const {
+  void pick_nearest(const Frame& frame, const In& in, const Out& out, const Gains& gains) const {
     const auto place = [&](int at, int from, int to) {
       const int there = p_.to == To::half ? 2 * at : half(to) == from ? at / 2 : static_cast<int>((at + 0.5) * from / to);
       return std::min(there, from - 1);
@@ -147,7 +161,7 @@ class Scale final : public Pass {
         for (int x = 0; x < out.width; ++x) {
           const auto value = row[place(x, in.width, out.width)];
           if constexpr (std::is_same_v<decltype(value), const float>)
-            out.at(x, y, c) = gain * value;
+            out.at(x, y, c) = gains.of(c) * value;
           else
             out.at(x, y, c) = value;
         }
@@ -155,7 +169,7 @@ class Scale final : public Pass {
     });
   }
 
-  static void halve(const Frame& frame, float gain) {
+  static void halve(const Frame& frame, const Gains& gains) {
     const FloatImage in = frame.image("image");
     const FloatOutput out = frame.output("image");
     const int pairs = in.width / 2;
@@ -164,14 +178,14 @@ class Scale final : public Pass {
         // Where there is no lower row, that above stands for it: the mean is the same.
         const float *upper = in.row(2 * y, c), *lower = in.row(std::min(2 * y + 1, in.height - 1), c);
         float* __restrict to = out.row(y, c);
-        const float quarter = 0.25F * gain;
+        const float quarter = 0.25F * gains.of(c);
         for (int x = 0; x < pairs; ++x) to[x] = quarter * ((upper[2 * x] + upper[2 * x + 1]) + (lower[2 * x] + lower[2 * x + 1]));
-        if (pairs < out.width) to[pairs] = 0.5F * gain * (upper[2 * pairs] + lower[2 * pairs]);
+        if (pairs < out.width) to[pairs] = 2 * quarter * (upper[2 * pairs] + lower[2 * pairs]);
       }
     });
   }
 
-  void enlarge(const Frame& frame, float gain) const {
+  void enlarge(const Frame& frame, const Gains& gains) const {
     const FloatImage in = frame.image("image");
     const FloatOutput out = frame.output("image");
     scale::Guides guides{frame.image("depth"), frame.image("normal"), frame.image("full_depth"), frame.image("full_normal")};
@@ -181,7 +195,7 @@ class Scale final : public Pass {
                                    .factor_y = factor(in.height, out.height),
                                    .inverse_sigma_z = static_cast<float>(kLog2E / p_.sigma_z),
                                    .normal_power = static_cast<float>(p_.sigma_n * kLog2E),
-                                   .gain = gain};
+                                   .gains = {gains.first, gains.others}};
     each_row(frame, out.height, [&](int y) { scale::enlarge_row(in, guides, settings, y, out); });
   }
 

@@ -95,7 +95,7 @@ class Likeness {
 
 void EnlargeRow(const FloatImage& small, const Guides& guides, const Settings& s, int y, const FloatOutput& large) {
   const Rows row = rows(y, s.factor_y, small.height);
-  const V one = set(1.0F), below = set(row.way), above = set(1 - row.way), gain = set(s.gain);
+  const V one = set(1.0F), below = set(row.way), above = set(1 - row.way);
   const bool is_guided = guides.full_depth || guides.full_normal;
   for (int x = 0; x < large.width; x += lanes()) {
     const Columns column = columns(x, s.factor_x, small.width);
@@ -115,7 +115,7 @@ void EnlargeRow(const FloatImage& small, const Guides& guides, const Settings& s
       V way = hn::Mul(weights[1], hn::Sub(pick(upper, column.second), base));
       way = hn::MulAdd(weights[2], hn::Sub(pick(lower, column.first), base), way);
       way = hn::MulAdd(weights[3], hn::Sub(pick(lower, column.second), base), way);
-      store(hn::Mul(gain, hn::MulAdd(way, scale, base)), large.width - x, large.row(y, c) + x);
+      store(hn::Mul(set(s.gains[c == 0 ? 0 : 1]), hn::MulAdd(way, scale, base)), large.width - x, large.row(y, c) + x);
     }
   }
 }

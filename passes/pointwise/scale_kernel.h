@@ -15,7 +15,7 @@ struct Settings {
   float factor_x = 0.5F, factor_y = 0.5F;
   float inverse_sigma_z = 0;  ///< of a relative difference in depth
   float normal_power = 0;     ///< of -ln(n.n')
-  float gain = 1;             ///< of the result
+  float gains[2] = {1, 1};    ///< of the first plane, and of all others
 };
 
 /// Row y of the large image.

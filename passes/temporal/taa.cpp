@@ -1,7 +1,7 @@
 // Temporal anti-aliasing: the history, limited to the colors around the pixel, and the new frame, weighted against flicker.
-// Source:  Karis, "High-Quality Temporal Supersampling", SIGGRAPH 2014 course: box of the 3 x 3 neighbors in YCoCg, rounded by
-// that
-//          of the cross; the history clipped toward its center; weights 1 / (1 + luma). Box by variance: Salvi, GDC 2016.
+// Source:  Karis, "High-Quality Temporal Supersampling", SIGGRAPH 2014 course: box of the 3 x 3 neighbors in YCoCg, the history
+//          clipped to it, weights 1 / (1 + luma). Pedersen, "Temporal Reprojection Anti-Aliasing in INSIDE", GDC 2016: the box
+//          rounded by that of the cross, and clipped toward its center. Box by variance: Salvi, GDC 2016.
 // Departs: the new frame is taken as it is, without the course's reconstruction filter; there is no adaptive alpha.
 // Cost:    9 taps of some 20 operations.
 #include "passes/temporal/taa_kernel.h"
@@ -50,8 +50,9 @@ const PassInfo kInfo{
         "The frames should be jittered, and be what is shown or something close to it: denoised, with albedo. The history is the "
         "result of the frame before, at this frame's pixels, best fetched by catmull_rom.",
     .source =
-        "Karis, \"High-Quality Temporal Supersampling\", SIGGRAPH 2014, Advances in Real-Time Rendering course. Variance: Salvi, "
-        "\"An Excursion in Temporal Supersampling\", GDC 2016. Departs: no reconstruction filter on the new frame, no alpha that "
+        "Karis, \"High-Quality Temporal Supersampling\", SIGGRAPH 2014, Advances in Real-Time Rendering course. Rounded, and "
+        "clipped toward the center: Pedersen, \"Temporal Reprojection Anti-Aliasing in INSIDE\", GDC 2016. Variance: Salvi, \"An "
+        "Excursion in Temporal Supersampling\", GDC 2016. Departs: no reconstruction filter on the new frame, no alpha that "
         "adapts, no search for the longest motion around a pixel.",
     .inputs = {{"color", kColor, "the new frame"},
                {"history", kColor, "the result so far, at this frame's pixels", true},

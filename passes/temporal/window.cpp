@@ -39,12 +39,15 @@ const PassInfo kInfo{
         "the frame in the middle. Pixels outside the image do not count.\n\n"
         "`variance` is that of the result, (V + sum of w_i^2 V_i) / (1 + sum of w_i)^2, 0 without one; `length` how many frames "
         "the mean is worth, (1 + sum of w_i)^2 / (1 + sum of w_i^2).\n\n"
-        "The other frames stand at this frame's pixels. Each comes from a reproject of its own: its history is the frame's input "
-        "with a delay, a negative one for a frame ahead, and its motion that from here to there. back_project gives it, with the "
-        "camera of that delay as previous_camera. Its `valid` goes to the same place of the list here.",
+        "The other frames stand at this frame's pixels. Each comes from a reproject of its own: its history are the graph's "
+        "inputs "
+        "with a delay, a negative one for a frame ahead, and initial none, so that a frame that is not there is nowhere valid; "
+        "its "
+        "motion is that from here to there, which back_project finds with the camera of that delay as previous_camera. Light is "
+        "divided by albedo after that, both from there. `valid` goes to the same place of the list here.",
     .source =
         "Buades et al., \"A Non-Local Algorithm for Image Denoising\", CVPR 2005, along motion. The variance of the difference: "
-        "Rousselle et al., \"Adaptive Rendering with Non-Local Means Filtering\", SIGGRAPH Asia 2012, equation 3. Departs: means "
+        "Rousselle et al., \"Adaptive Rendering with Non-Local Means Filtering\", SIGGRAPH Asia 2012. Departs: means "
         "of patches are compared, and their difference, not its square, is what the variance is taken of.",
     .inputs =
         {{"color", kColor, "the frame in the middle"},

@@ -64,6 +64,18 @@ TEST(Scale, DoublesGuidesByRepetitionAndDoublesMotion) {
     }
 }
 
+// 19 x 9 pixels become 57 x 18: threefold along the rows, twice as many rows.
+TEST(Scale, ScalesMotionWithThePixels) {
+  for (const char* method : {"nearest", "average"}) {
+    PassTest pass("scale");
+    pass.set("to", "double").set("method", method);
+    pass.input("image", test_image(QUELL_TYPE_MOTION, {19, 9}, [](int, int, int c) { return c == 0 ? 1.5F : -2.0F; }));
+    pass.input("full_depth", test_image(QUELL_TYPE_DEPTH, {57, 18}, scene::depth)).run();
+    EXPECT_NEAR(pass.output("image").at(30, 9, 0), 4.5, 1e-6) << method;
+    EXPECT_EQ(pass.output("image").at(30, 9, 1), -4.0F) << method;
+  }
+}
+
 struct Case {
   Size full;
   bool with_depth = true, with_normal = true;
