@@ -39,9 +39,8 @@ struct Size {
   bool operator==(const Size&) const = default;
 };
 
-/// The question and answer of Pass::infer. Unless told otherwise, every output has the size of the first image input
-/// that is not of any size, every
-/// radius is 0, nothing is computed in place and no scratch is given.
+/// The question and answer of Pass::infer. Unless told otherwise, every output has the size of the first image input that is not
+/// of any size, every radius is 0, nothing is computed in place and no scratch is given.
 class Inference {
  public:
   Inference(const std::vector<PortInfo>& inputs, const std::vector<PortInfo>& outputs, quell_inference& raw)

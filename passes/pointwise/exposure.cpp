@@ -5,7 +5,6 @@
 // Departs: the darkest and the brightest pixels are left out; luminance is counted in 64 steps a stop; adaptation is in stops.
 // Cost:    a dot product and a count a pixel.
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -39,8 +38,7 @@ const PassInfo kInfo{
     .doc =
         "exposure = key / exp(mean of ln l) over the luminances l between the two percentiles, limited to 2^min_stops and "
         "2^max_stops. Pixels that are black, negative or not finite do not count. Each luminance counts as the middle of its "
-        "step, "
-        "of which a stop has 64: the mean errs by at most 1 / 64 stop, and does not depend on threads.\n\n"
+        "step, of which a stop has 64: the mean errs by at most 1 / 64 stop, and does not depend on threads.\n\n"
         "With a previous exposure (this output, delayed by a frame), log2 of the result goes from that toward the aim by 1 - "
         "exp(-1 / adaptation) of the way. Where nothing counts, the previous exposure stays; without one it is 1.\n\n"
         "Exposures of tone mappers are in stops: log2 of this.",

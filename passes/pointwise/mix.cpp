@@ -21,8 +21,8 @@ const PassInfo kInfo{
     .summary = "Interpolates between two images, by a number or by an image",
     .doc =
         "image = a + (b - a) s, in each plane, with s = amount, times min(max(t, 0), 1) where t is given: a mask chooses, a "
-        "confidence or a coverage blends. Where s is 0 or 1 it is a or b, bit for bit, whatever the other is. a and b are of one "
-        "type. Without b, or while it is absent, it is a.",
+        "confidence or a coverage blends. Where s is 0 or 1 it is a or b, bit for bit, whatever the other is. a and b are of "
+        "one type. Without b, or while it is absent, it is a.",
     .source = "arithmetic",
     .inputs = {{"a", kAnyFloatImage, "where s is 0"},
                {"b", kAnyFloatImage, "where s is 1; of the type of a", true},

@@ -1,7 +1,6 @@
 // Half and double resolution: means of 2 x 2 pixels down, joint bilateral upsampling up.
-// Source:  Kopf et al., "Joint Bilateral Upsampling", SIGGRAPH 2007, section 3: weights of distance at the small and of likeness
-// at
-//          the large resolution.
+// Source:  Kopf et al., "Joint Bilateral Upsampling", SIGGRAPH 2007, section 3: weights of distance at the small resolution and
+//          of likeness at the large one.
 // Departs: the spatial weight is the bilinear tent of four taps; likeness is that of depth and normals; taps that are all unlike
 //          count by distance alone.
 // Cost:    down, four loads a channel; up, four gathered taps a channel and, with guides, one weight a tap.
@@ -29,8 +28,8 @@ struct Params {
           "Which resolution the result has.");
     field("method", method,
           Choices{{"by_type",
-                   "average for color, albedo, moments, variance, scalar and alpha; nearest for what has no mean across an edge: "
-                   "normal, position, depth, id, motion and mask"},
+                   "average for color, albedo, moments, variance, scalar and alpha; nearest for what has no mean across an "
+                   "edge: normal, position, depth, id, motion and mask"},
                   {"average", "the mean of 2 x 2 pixels, or joint bilateral upsampling; ids are taken as with nearest"},
                   {"nearest", "the upper left one of 2 x 2 pixels, or the pixel that contains the new one's center"}},
           "How pixels become others.");
@@ -44,17 +43,17 @@ const PassInfo kInfo{
     .summary = "Half or double resolution, guided by depth and normals where it is doubled",
     .doc =
         "Half: pixel (x, y) is the mean of those of (2x, 2y) to (2x + 1, 2y + 1) that exist, or the first of them.\n\n"
-        "Double: the center of a pixel, (x + 0.5) / 2 - 0.5 among the small ones, has four around it (those outside repeat the "
-        "border). Average weighs them bilinearly, times exp(-|z - z'| / (sigma_z |z|)) max(0, n.n')^sigma_n + 1e-6, with z, n of "
-        "the full guides and z', n' of the small ones; guides of which one is absent are left out. Where the size of the full "
-        "guides is not twice that of the image, or one less, coordinates are scaled by the quotient of the sizes. The small "
-        "guides are best made by this pass from the full ones.\n\n"
+        "Double: the center of a pixel, (x + 0.5) / 2 - 0.5 among the small ones, has four around it (those outside repeat "
+        "the border). Average weighs them bilinearly, times exp(-|z - z'| / (sigma_z |z|)) max(0, n.n')^sigma_n + 1e-6, with "
+        "z, n of the full guides and z', n' of the small ones; guides of which one is absent are left out. Where the size of "
+        "the full guides is not twice that of the image, or one less, coordinates are scaled by the quotient of the sizes. "
+        "The small guides are best made by this pass from the full ones.\n\n"
         "Motion is in pixels and is scaled with them. A variance is averaged as any number: that of the mean of four "
         "independent pixels is a quarter of it.",
     .source =
         "Kopf et al., \"Joint Bilateral Upsampling\", SIGGRAPH 2007, section 3. Departs: a bilinear tent of four taps as the "
-        "spatial weight, depth and normals instead of colors, and the floor of 1e-6, which makes it bilinear where all taps are "
-        "unlike.",
+        "spatial weight, depth and normals instead of colors, and the floor of 1e-6, which makes it bilinear where all taps "
+        "are unlike.",
     .inputs = {{"image", kAnyImage, "what to scale"},
                {"depth", kDepth, "for double: at the image's resolution", true},
                {"normal", kNormal, "for double: at the image's resolution", true},

@@ -24,8 +24,8 @@ const PassInfo kInfo{
     .id = "split",
     .summary = "Takes an image apart into its planes",
     .doc =
-        "Each plane becomes a scalar image, which can be filtered, mixed or shown by itself; merge puts three of them together "
-        "again. Of images of two planes the third is 0, and they have no YCoCg: their planes are taken as they are.",
+        "Each plane becomes a scalar image, which can be filtered, mixed or shown by itself; merge puts three of them "
+        "together again. Of images of two planes the third is 0, and they have no YCoCg: their planes are taken as they are.",
     .source =
         "arithmetic. YCoCg: Malvar and Sullivan, \"YCoCg-R: A Color Space with RGB Reversibility and Low Dynamic Range\", "
         "JVT-I014r3, 2003.",

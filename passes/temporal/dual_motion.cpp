@@ -4,7 +4,6 @@
 // Departs: the occluder's motion is that of the pixel that contains y, since motion must not be interpolated across its edge.
 // Cost:    one fetch a pixel.
 #include <cmath>
-#include <cstdint>
 
 #include "quell/sdk/pass.h"
 
@@ -17,19 +16,18 @@ const PassInfo kInfo{
     .id = "dual_motion",
     .summary = "Motion by way of the occluder, where the ordinary one finds no history",
     .doc =
-        "Where valid is 0, pixel x was hidden: y = x + motion is where it would have been seen, and what was seen there instead, "
-        "the occluder, now is at z = y + forward_motion(y). Keeping its place beside the occluder, x is looked for at x' = y + "
-        "(x - z): the motion becomes x' - x = -forward_motion(y), that of the pixel that contains y. What is found there is the "
-        "background that was beside the occluder: another point of the same surface, mostly, as the tests of a second "
-        "reproject, with this motion, make sure.\n\n"
+        "Where valid is 0, pixel x was hidden: y = x + motion is where it would have been seen, and what was seen there "
+        "instead, the occluder, now is at z = y + forward_motion(y). Keeping its place beside the occluder, x is looked for "
+        "at x' = y + (x - z): the motion becomes x' - x = -forward_motion(y), that of the pixel that contains y. What is "
+        "found there is the background that was beside the occluder: another point of the same surface, mostly, as the tests "
+        "of a second reproject, with this motion, make sure.\n\n"
         "The motion stays as it is where valid is 1, where y is off the screen or showed no surface (previous_id without "
-        "object), "
-        "where the forward motion is not finite or farther than 1e6 pixels, and everywhere while it is absent. `dual` tells the "
-        "pixels whose motion is another. back_project gives the forward motion when it is asked the other way round: position, "
-        "id and camera with a delay of 1, and this frame's camera as previous_camera.",
+        "object), where the forward motion is not finite or farther than 1e6 pixels, and everywhere while it is absent. "
+        "`dual` tells the pixels whose motion is another. back_project gives the forward motion when it is asked the other "
+        "way round: position, id and camera with a delay of 1, and this frame's camera as previous_camera.",
     .source =
-        "Zeng et al., \"Temporally Reliable Motion Vectors for Real-time Ray Tracing\", Computer Graphics Forum 40 (2), 2021, the "
-        "part on occlusions. Departs: the fetch of the occluder's motion is the nearest one.",
+        "Zeng et al., \"Temporally Reliable Motion Vectors for Real-time Ray Tracing\", Computer Graphics Forum 40 (2), "
+        "2021, the part on occlusions. Departs: the fetch of the occluder's motion is the nearest one.",
     .inputs = {{"motion", kMotion, "previous minus current position, pixels, y down"},
                {"valid", kMask, "where that found a history; without it, nowhere", true},
                {"forward_motion", kMotion, "of the previous frame's pixels: current minus previous position, pixels, y down",

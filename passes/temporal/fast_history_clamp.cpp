@@ -1,7 +1,6 @@
 // Limits a slow history to what a fast one makes plausible: little noise, and little lag.
-// Source:  RELAX of NVIDIA's NRD, history clamping: mean +- k deviations of 5 x 5 pixels of the fast history, in YCoCg, widened
-// to
-//          include the pixel itself.
+// Source:  RELAX of NVIDIA's NRD, history clamping: mean +- k deviations of 5 x 5 pixels of the fast history, in YCoCg, and the
+//          pixel itself.
 // Departs: NRD writes the fast history over the slow one where it is younger than the history fix wants; here it is left alone.
 // Cost:    (2 radius + 1)^2 taps of some 25 operations.
 #include "passes/temporal/fast_history_clamp_kernel.h"
@@ -36,16 +35,16 @@ const PassInfo kInfo{
     .summary = "Limits a slow history to what a fast one makes plausible",
     .doc =
         "color becomes min(max(color, mu - k sigma), mu + k sigma), in each component, with the mean mu and the population's "
-        "standard deviation sigma of the fast history in the window. Both are averages over time of one signal, at this frame's "
-        "pixels, the fast one of fewer frames (alpha 1 / 6, say, against 1 / 30): where the light changes the fast one is there "
-        "first, and takes the slow one along.\n\n"
-        "Pixels outside the image and without surface (depth 1e10) do not count. Pixels without surface, histories shorter than "
-        "min_length, and colors within the limits stay as they are, bit for bit. `clamped` is how far the luma Y = (R + 2 G + B) "
-        "/ 4 went from slow to fast, 0 to 1: what else belongs to the history can be mixed by it.",
+        "standard deviation sigma of the fast history in the window. Both are averages over time of one signal, at this "
+        "frame's pixels, the fast one of fewer frames (alpha 1 / 6, say, against 1 / 30): where the light changes the fast "
+        "one is there first, and takes the slow one along.\n\n"
+        "Pixels outside the image and without surface (depth 1e10) do not count. Pixels without surface, histories shorter "
+        "than min_length, and colors within the limits stay as they are, bit for bit. `clamped` is how far the luma Y = (R + "
+        "2 G + B) / 4 went from slow to fast, 0 to 1: what else belongs to the history can be mixed by it.",
     .source =
-        "NVIDIA Real-Time Denoisers (NRD) 4.17, RELAX, history clamping: 5 x 5, 2 sigma, 30 and 6 frames. The window's mean and "
-        "deviation: Salvi, \"An Excursion in Temporal Supersampling\", GDC 2016. Departs: young histories are left alone; at the "
-        "border NRD repeats pixels.",
+        "NVIDIA Real-Time Denoisers (NRD) 4.17, RELAX, history clamping: 5 x 5, 2 sigma, 30 and 6 frames. The window's mean "
+        "and deviation: Salvi, \"An Excursion in Temporal Supersampling\", GDC 2016. Departs: young histories are left "
+        "alone; at the border NRD repeats pixels.",
     .inputs = {{"color", kColor, "the slow history"},
                {"fast", kColor, "the fast history"},
                {"length", kScalar, "how many frames the history reaches back", true},

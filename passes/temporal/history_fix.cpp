@@ -39,17 +39,18 @@ const PassInfo kInfo{
     .id = "history_fix",
     .summary = "Filters widely where history is short",
     .doc =
-        "Where length is below min_length, each image becomes its mean over 5 x 5 taps that are s = round(stride / (1 + length)) "
-        "pixels apart, half to even; a length below 1 counts as 1. The pixel itself has weight 1, a tap max(0, n.n')^sigma_n, "
-        "where it has the same id and |n.(p' - p)| <= plane_relative z + plane_absolute, else 0. Where there is no position or "
-        "no normal, but a depth with its gradient, exp(-|z - z'| / (sigma_z max(g, 1e-8) d)) takes the place of the plane, with "
-        "the distance d in pixels. Terms whose inputs are absent are left out. Taps outside the image and without surface (depth "
-        "1e10) do not count; pixels without surface, and those with a longer history, stay as they are, bit for bit.\n\n"
+        "Where length is below min_length, each image becomes its mean over 5 x 5 taps that are s = round(stride / (1 + "
+        "length)) pixels apart, half to even; a length below 1 counts as 1. The pixel itself has weight 1, a tap max(0, "
+        "n.n')^sigma_n, where it has the same id and |n.(p' - p)| <= plane_relative z + plane_absolute, else 0. Where there "
+        "is no position or no normal, but a depth with its gradient, exp(-|z - z'| / (sigma_z max(g, 1e-8) d)) takes the "
+        "place of the plane, with the distance d in pixels. Terms whose inputs are absent are left out. Taps outside the "
+        "image and without surface (depth 1e10) do not count; pixels without surface, and those with a longer history, stay "
+        "as they are, bit for bit.\n\n"
         "All images share the weights: give it the history's color and its moments together.",
     .source =
-        "NVIDIA Real-Time Denoisers (NRD) 4.17, RELAX, history fix: 5 x 5 taps, stride 14, 3 frames, power 8 of the cosine, and "
-        "0.003 of the depth as distance from the plane. Departs: NRD mirrors taps at the border, leaves out those of a weight "
-        "below 1e-4, and keeps cosines above 0.01; depth by its gradient is that of Schied et al., \"Spatiotemporal "
+        "NVIDIA Real-Time Denoisers (NRD) 4.17, RELAX, history fix: 5 x 5 taps, stride 14, 3 frames, power 8 of the cosine, "
+        "and 0.003 of the depth as distance from the plane. Departs: NRD mirrors taps at the border, leaves out those of a "
+        "weight below 1e-4, and keeps cosines above 0.01; depth by its gradient is that of Schied et al., \"Spatiotemporal "
         "Variance-Guided Filtering\", HPG 2017.",
     .inputs = {{.name = "image", .types = kAnyFloatImage, .doc = "what to filter", .array = true},
                {"length", kScalar, "how many frames the history reaches back"},

@@ -1,12 +1,10 @@
 // Trusts a history less where percentiles of luminance in blocks of the frame jump, and bounds fireflies by them.
-// Source:  percentile-adaptive SVGF, of which it is known that percentiles of luminance in blocks of 8 x 8 pixels set alpha and
-// the
-//          bound of fireflies, without the extra rays of A-SVGF's gradients.
+// Source:  percentile-adaptive SVGF, of which it is known that percentiles of luminance in blocks of 8 x 8 pixels set alpha
+//          and the bound of fireflies, without the extra rays of A-SVGF's gradients.
 // Departs: how they do is quell's: the relative change of one percentile from frame to frame, beyond a tolerance; a multiple of
 //          another as the bound; both interpolated between the centers of the blocks.
 // Cost:    a partial sort of each block, three times; a bilinear interpolation a pixel.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -38,18 +36,18 @@ const PassInfo kInfo{
     .summary = "Trusts a history less where percentiles of luminance jump, and bounds fireflies by them",
     .doc =
         "The image is cut into blocks, the last ones of a row or column smaller. Of each, P and P' are the percentile of "
-        "luminance in the new frame and in the previous one, over those pixels where that is valid: of n luminances in order, "
-        "the one of index round((n - 1) percentile / 100), half away from zero, what is not finite counting as 0. The block's "
-        "confidence is 1 - min(1, sensitivity max(0, |P - P'| - tolerance m) / m) with m = max(P, P', 1e-6); 1 without pixels to "
-        "compare. `confidence` is that, and the bound of `color` bound times the bright percentile of the new frame, bilinearly "
-        "between the centers of the blocks. Colors above the bound are scaled down to it.\n\n"
+        "luminance in the new frame and in the previous one, over those pixels where that is valid: of n luminances in "
+        "order, the one of index round((n - 1) percentile / 100), half away from zero, what is not finite counting as 0. The "
+        "block's confidence is 1 - min(1, sensitivity max(0, |P - P'| - tolerance m) / m) with m = max(P, P', 1e-6); 1 "
+        "without pixels to compare. `confidence` is that, and the bound of `color` bound times the bright percentile of the "
+        "new frame, bilinearly between the centers of the blocks. Colors above the bound are scaled down to it.\n\n"
         "Compare like with like: `previous` is the noisy frame before, not an average, at this frame's pixels, fetched by "
         "nearest; an average has other percentiles than noise around it. The confidence is what temporal_blend asks for: its "
         "alpha becomes 1 - confidence (1 - alpha).",
     .source =
-        "Percentile-adaptive SVGF, entry to the SVGF competition at High-Performance Graphics 2025: percentiles of luminance in "
-        "blocks of 8 x 8 pixels set alpha and the bound of fireflies. Departs: the formulas, the interpolation and all numbers "
-        "but the 8 are quell's, since the entry's are not at hand.",
+        "Percentile-adaptive SVGF, entry to the SVGF competition at High-Performance Graphics 2025: percentiles of luminance "
+        "in blocks of 8 x 8 pixels set alpha and the bound of fireflies. Departs: the formulas, the interpolation and all "
+        "numbers but the 8 are quell's, since the entry's are not at hand.",
     .inputs = {{"color", kColor, "the new frame, noisy"},
                {"previous", kColor, "the noisy frame before, at this frame's pixels", true},
                {"valid", kMask, "where that can be used; without it, everywhere", true}},

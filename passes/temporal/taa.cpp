@@ -44,16 +44,15 @@ const PassInfo kInfo{
     .summary = "Temporal anti-aliasing: clips the history to the neighborhood's colors, and blends",
     .doc =
         "color = (alpha w(c) c + (1 - alpha) w(h) h) / (alpha w(c) + (1 - alpha) w(h)), with the new frame c, the history h "
-        "after "
-        "limiting, and w = 1 / (1 + max(Y, 0)), or 1. Y = (R + 2 G + B) / 4, Co = (R - B) / 2, Cg = (2 G - R - B) / 4. Neighbors "
-        "outside the image do not count. Where the history is absent or not valid, the new color stands alone.\n\n"
-        "The frames should be jittered, and be what is shown or something close to it: denoised, with albedo. The history is the "
-        "result of the frame before, at this frame's pixels, best fetched by catmull_rom.",
+        "after limiting, and w = 1 / (1 + max(Y, 0)), or 1. Y = (R + 2 G + B) / 4, Co = (R - B) / 2, Cg = (2 G - R - B) / 4. "
+        "Neighbors outside the image do not count. Where the history is absent or not valid, the new color stands alone.\n\n"
+        "The frames should be jittered, and be what is shown or something close to it: denoised, with albedo. The history is "
+        "the result of the frame before, at this frame's pixels, best fetched by catmull_rom.",
     .source =
         "Karis, \"High-Quality Temporal Supersampling\", SIGGRAPH 2014, Advances in Real-Time Rendering course. Rounded, and "
-        "clipped toward the center: Pedersen, \"Temporal Reprojection Anti-Aliasing in INSIDE\", GDC 2016. Variance: Salvi, \"An "
-        "Excursion in Temporal Supersampling\", GDC 2016. Departs: no reconstruction filter on the new frame, no alpha that "
-        "adapts, no search for the longest motion around a pixel.",
+        "clipped toward the center: Pedersen, \"Temporal Reprojection Anti-Aliasing in INSIDE\", GDC 2016. Variance: Salvi, "
+        "\"An Excursion in Temporal Supersampling\", GDC 2016. Departs: no reconstruction filter on the new frame, no alpha "
+        "that adapts, no search for the longest motion around a pixel.",
     .inputs = {{"color", kColor, "the new frame"},
                {"history", kColor, "the result so far, at this frame's pixels", true},
                {"valid", kMask, "where the history can be used; without it, everywhere", true}},

@@ -33,22 +33,21 @@ const PassInfo kInfo{
     .summary = "Mean over frames before and after, where they look alike",
     .doc =
         "color = (c + sum over i of w_i c_i) / (1 + sum over i of w_i), over the other frames i that are present, with w_i = "
-        "exp(-d^2 / (2 k^2 v)) where the frame is valid, else 0. Over those pixels of the window where the frame is valid, d is "
-        "the sum of the differences of luminance, l_i - l, and v that of the variances, V_i + V, which is the variance of d when "
-        "nothing but noise differs. Without a variance w_i is 1 where valid. A frame without a variance of its own has that of "
-        "the frame in the middle. Pixels outside the image do not count.\n\n"
-        "`variance` is that of the result, (V + sum of w_i^2 V_i) / (1 + sum of w_i)^2, 0 without one; `length` how many frames "
-        "the mean is worth, (1 + sum of w_i)^2 / (1 + sum of w_i^2).\n\n"
+        "exp(-d^2 / (2 k^2 v)) where the frame is valid, else 0. Over those pixels of the window where the frame is valid, d "
+        "is the sum of the differences of luminance, l_i - l, and v that of the variances, V_i + V, which is the variance of "
+        "d when nothing but noise differs. Without a variance w_i is 1 where valid. A frame without a variance of its own "
+        "has that of the frame in the middle. Pixels outside the image do not count.\n\n"
+        "`variance` is that of the result, (V + sum of w_i^2 V_i) / (1 + sum of w_i)^2, 0 without one; `length` how many "
+        "frames the mean is worth, (1 + sum of w_i)^2 / (1 + sum of w_i^2).\n\n"
         "The other frames stand at this frame's pixels. Each comes from a reproject of its own: its history are the graph's "
-        "inputs "
-        "with a delay, a negative one for a frame ahead, and initial none, so that a frame that is not there is nowhere valid; "
-        "its "
-        "motion is that from here to there, which back_project finds with the camera of that delay as previous_camera. Light is "
-        "divided by albedo after that, both from there. `valid` goes to the same place of the list here.",
+        "inputs with a delay, a negative one for a frame ahead, and initial none, so that a frame that is not there is "
+        "nowhere valid; its motion is that from here to there, which back_project finds with the camera of that delay as "
+        "previous_camera. Light is divided by albedo after that, both from there. `valid` goes to the same place of the list "
+        "here.",
     .source =
-        "Buades et al., \"A Non-Local Algorithm for Image Denoising\", CVPR 2005, along motion. The variance of the difference: "
-        "Rousselle et al., \"Adaptive Rendering with Non-Local Means Filtering\", SIGGRAPH Asia 2012. Departs: means "
-        "of patches are compared, and their difference, not its square, is what the variance is taken of.",
+        "Buades et al., \"A Non-Local Algorithm for Image Denoising\", CVPR 2005, along motion. The variance of the "
+        "difference: Rousselle et al., \"Adaptive Rendering with Non-Local Means Filtering\", SIGGRAPH Asia 2012. Departs: "
+        "means of patches are compared, and their difference, not its square, is what the variance is taken of.",
     .inputs =
         {{"color", kColor, "the frame in the middle"},
          {"variance", kVariance, "of its luminance", true},
