@@ -22,7 +22,7 @@ std::string number(double value) {
   return digits.data();
 }
 
-/// The type of a port: "color", "color or albedo", "as input history"; with "list of" and "optional".
+/// The type of a port: "color", "color or albedo", "as input history"; with "list of", "optional" and "of any size".
 std::string describe_type(const quell_port_desc& port, const quell_pass_desc& pass) {
   std::string type;
   if (port.flags & QUELL_PORT_ARRAY) type += "list of ";
@@ -31,6 +31,7 @@ std::string describe_type(const quell_port_desc& port, const quell_pass_desc& pa
   else
     type += "what '" + text(QUELL_AT(quell_port_desc, pass.inputs, port.same_as)->name) + "' is";
   if (port.flags & QUELL_PORT_OPTIONAL) type += ", optional";
+  if (port.flags & QUELL_PORT_ANY_SIZE) type += ", of any size";
   return type;
 }
 

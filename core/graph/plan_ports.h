@@ -15,6 +15,7 @@ inline const quell_port_desc& output_port(const Node& node, std::size_t port) {
 }
 inline bool is_optional(const quell_port_desc& port) { return (port.flags & QUELL_PORT_OPTIONAL) != 0; }
 inline bool is_array(const quell_port_desc& port) { return (port.flags & QUELL_PORT_ARRAY) != 0; }
+inline bool is_any_size(const quell_port_desc& port) { return (port.flags & QUELL_PORT_ANY_SIZE) != 0; }
 
 /// How many items an output has: those of its `same_as` input for an array, else one.
 inline std::size_t item_count(const Node& node, std::size_t output) {

@@ -109,9 +109,10 @@ class ShapeSolver {
     std::vector<std::vector<Expected>> expected = expect(node);
     bool any_open = false, all_final = true;
     Size size, hint;
-    for (const auto& port : expected)
-      for (const Expected& item : port) {
-        if (is_image(item.shape.type) && item.shape.present && item.sized && size == Size{}) size = item.shape.size;
+    for (std::size_t port = 0; port < expected.size(); ++port)
+      for (const Expected& item : expected[port]) {
+        const bool tells = is_image(item.shape.type) && item.shape.present && !is_any_size(input_port(node, port));
+        if (tells && item.sized && size == Size{}) size = item.shape.size;
         if (!item.sized && hint == Size{}) hint = item.hint;
         any_open |= !item.sized;
         all_final &= item.final;
@@ -131,8 +132,8 @@ class ShapeSolver {
     if (check_sizes(node, inputs, findings)) ask(planned, inputs, outputs_like(planned.node, inputs, size), findings);
   }
 
-  // The one place that decides which sizes may meet. A node's images all have one size: a pass cannot declare yet that it takes
-  // others (as an upsampling guided by a larger image would). A value and its initial value have one size, too.
+  // The one place that decides which sizes may meet. A node's images have one size, but for those of ports of any size (what
+  // guides an upsampling). A value and its initial value have one size, too.
   bool check_sizes(const Node& node, const PortShapes& inputs, std::vector<Finding>& findings) const {
     const std::size_t before = findings.size();
     const Edge* first = nullptr;
@@ -144,7 +145,9 @@ class ShapeSolver {
         const Edge& edge = node.inputs[port][i];
         if (!is_image(shape.type) || !shape.present) continue;
         const std::string name = item_name(input_port(node, port), i);
-        if (!first) {
+        if (is_any_size(input_port(node, port))) {
+          // What fits is the pass's to say.
+        } else if (!first) {
           first = &edge, first_name = name, size = shape.size;
         } else if (shape.size != size) {
           findings.push_back({edge.where, "'" + name + "' of '" + node.name + "' is " + sized(edge.from, shape.size) + ", but '" +

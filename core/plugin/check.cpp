@@ -15,13 +15,14 @@ std::string fault_in_port(const quell_port_desc& port, const quell_pass_desc& pa
   if (!is_snake_case(port.name)) return "its name is not in snake_case";
   if (!port.doc) return "its doc is null";
   if (port.types >= QUELL_TYPE_BIT(QUELL_TYPE_COUNT)) return "it has a type that is not known";
-  if (port.flags & ~(QUELL_PORT_OPTIONAL | QUELL_PORT_ARRAY)) return "it has a flag that is not known";
+  if (port.flags & ~(QUELL_PORT_OPTIONAL | QUELL_PORT_ARRAY | QUELL_PORT_ANY_SIZE)) return "it has a flag that is not known";
   const bool is_array = port.flags & QUELL_PORT_ARRAY;
   if (!is_output) {
     if (port.same_as != -1) return "only an output may be of the same type as an input";
     return port.types == 0 ? "it accepts no type" : "";
   }
   if (port.flags & QUELL_PORT_OPTIONAL) return "an output cannot be optional";
+  if (port.flags & QUELL_PORT_ANY_SIZE) return "an output cannot be of any size: infer says which it has";
   if (port.same_as < -1 || port.same_as >= static_cast<std::int64_t>(pass.input_count)) return "its same_as names no input";
   if (port.same_as >= 0) {
     const quell_port_desc& followed = *QUELL_AT(quell_port_desc, pass.inputs, port.same_as);

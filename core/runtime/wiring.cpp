@@ -150,8 +150,9 @@ class Builder {
 
   // The one size of the images that a node reads.
   Size image_size(const Node& reader) const {
-    for (const std::vector<Edge>& port : reader.inputs)
-      for (const Edge& edge : port) {
+    for (std::size_t port = 0; port < reader.inputs.size(); ++port)
+      for (const Edge& edge : reader.inputs[port]) {
+        if (QUELL_AT(quell_port_desc, reader.pass->inputs, port)->flags & QUELL_PORT_ANY_SIZE) continue;
         Shape shape{.present = false};
         if (!edge.from.is_nothing()) shape = plan_.shape(edge.from);
         if (!shape.present && edge.initial.kind == Initial::Kind::endpoint) shape = plan_.shape(edge.initial.endpoint);

@@ -110,6 +110,7 @@ typedef struct quell_port {
 
 #define QUELL_PORT_OPTIONAL 1u  // input: may be unconnected, and may be absent in a frame
 #define QUELL_PORT_ARRAY 2u     // input: a list of sources; output: as many items as the input array `same_as`
+#define QUELL_PORT_ANY_SIZE 4u  // input: images of it may have another size than those of the other inputs; infer is told which
 
 typedef struct quell_port_desc {
   uint32_t struct_size;
@@ -214,7 +215,7 @@ typedef struct quell_inference {
   uint32_t struct_size;
   uint32_t input_count, output_count;
   const quell_port_shape* inputs;
-  quell_port_shape* outputs;  // prefilled: declared (first) type, size of the first image input
+  quell_port_shape* outputs;  // prefilled: declared (first) type, size of the first image input that is not of any size
   int32_t* radius;            // pixels read around a pixel, for each input; prefilled 0; or QUELL_RADIUS_UNBOUNDED
   int32_t* in_place_of;       // for each output: the input whose memory it may take over; prefilled -1 (needs radius 0)
   size_t scratch_bytes;       // for the whole frame; prefilled 0

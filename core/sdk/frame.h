@@ -22,6 +22,7 @@ struct PortInfo {
   bool optional = false;  ///< input: may be unconnected or absent
   bool array = false;     ///< input: a list of sources. output: one item for each of `same_as`
   const char* same_as = nullptr;
+  bool any_size = false;  ///< input: its images may have another size than those of the other inputs
 };
 
 namespace detail {
@@ -38,8 +39,8 @@ struct Size {
   bool operator==(const Size&) const = default;
 };
 
-/// The question and answer of Pass::infer. Unless told otherwise, every output has the size of the first image input, every
-/// radius is 0, nothing is computed in place and no scratch is given.
+/// The question and answer of Pass::infer. Unless told otherwise, every output has the size of the first image input that is not
+/// of any size, every radius is 0, nothing is computed in place and no scratch is given.
 class Inference {
  public:
   Inference(const std::vector<PortInfo>& inputs, const std::vector<PortInfo>& outputs, quell_inference& raw)
@@ -105,6 +106,12 @@ class Frame {
   bool has(std::string_view input, std::size_t i = 0) const {
     const quell_item* it = item(in(input), i);
     return it && (it->image || it->camera || it->values);
+  }
+  /// The type of what the input carries; it has that item.
+  quell_type type(std::string_view input, std::size_t i = 0) const {
+    const quell_item* it = item(in(input), i);
+    if (!it) throw std::logic_error("the pass asks for an item that the port does not have");
+    return static_cast<quell_type>(it->type);
   }
   /// Float planes of an input; a false view when absent.
   FloatImage image(std::string_view input, std::size_t i = 0) const {

@@ -117,7 +117,8 @@ class [[gnu::visibility("hidden")]] Descriptor {
     desc_.changes = changes_.data(), desc_.change_count = static_cast<std::uint32_t>(changes_.size());
   }
   quell_port_desc describe(const PortInfo& port) const {
-    const std::uint32_t flags = (port.optional ? QUELL_PORT_OPTIONAL : 0u) | (port.array ? QUELL_PORT_ARRAY : 0u);
+    const std::uint32_t flags = (port.optional ? QUELL_PORT_OPTIONAL : 0u) | (port.array ? QUELL_PORT_ARRAY : 0u) |
+                                (port.any_size ? QUELL_PORT_ANY_SIZE : 0u);
     // A name that no input has becomes an index that none has, which the host refuses: nothing may throw while a plugin loads.
     int same_as = port.same_as ? 0 : -1;
     while (same_as >= 0 && same_as < static_cast<int>(inputs_.size()) &&

@@ -96,6 +96,24 @@ inline const quell_pass_desc* resize() {
       .get();
 }
 
+/// At the size of its guide, which may be another.
+class Guided : public Idle {
+ public:
+  explicit Guided(const NoParams&) {}
+  void infer(Inference& inference) const override {
+    inference.set_size("color", inference.size("guide"));
+    inference.set_unbounded("color");
+  }
+};
+inline const quell_pass_desc* guided() {
+  return detail::Descriptor::make<Guided, NoParams>({.id = "guided",
+                                                     .inputs = {{.name = "guide", .types = kAnyImage, .any_size = true},
+                                                                {"color", kAnyImage},
+                                                                {.name = "more", .types = kAnyImage, .optional = true}},
+                                                     .outputs = {{.name = "color", .same_as = "color"}, {"weight", kScalar}}})
+      .get();
+}
+
 /// Several images, each for itself, under one guide.
 class Channels : public Idle {
  public:

@@ -76,6 +76,32 @@ TEST(PlanShapes, OfANodesImagesAreEqualOrBothEdgesAreNamed) {
   EXPECT_THAT(error, Not(HasSubstr("'end'"))) << "it only follows from the others";
 }
 
+TEST(PlanShapes, OfAPortOfAnySizeMayBeOthers) {
+  Builder builder;
+  const auto graph = builder.input("color")
+                         .node("half", resize(), {{"color", {"color"}}})
+                         .node("up", guided(), {{"guide", {"color"}}, {"color", {"half.color"}}, {"more", {"half.color"}}})
+                         .node("bad", guided(), {{"guide", {"half.color"}}, {"color", {"half.color"}}, {"more", {"color"}}})
+                         .output("up.color")
+                         .output("bad.color")
+                         .build();
+  EXPECT_THAT(error_of(graph, kColor64), HasSubstr("'more' of 'bad' is 64 x 32 (from 'color'), but 'color' is 32 x 16"))
+      << "the others still have one size";
+}
+
+TEST(PlanShapes, OfAPortOfAnySizeDoNotTellThatOfTheOutputs) {
+  Builder builder;
+  const auto graph = builder.input("color")
+                         .node("half", resize(), {{"color", {"color"}}})
+                         .node("up", guided(), {{"guide", {"color"}}, {"color", {"half.color"}}})
+                         .output("up.color")
+                         .output("up.weight")
+                         .build();
+  const Plan plan = make_plan(graph, kColor64);
+  EXPECT_EQ(plan.shape(builder.endpoint("up.color")).size, (Size{64, 32})) << "as the pass says";
+  EXPECT_EQ(plan.shape(builder.endpoint("up.weight")).size, (Size{32, 16})) << "that of its first other image";
+}
+
 // A node's history comes first among its inputs, from a node that runs later, at half the size.
 TEST(PlanShapes, OfALoopComeFromTheLaterNode) {
   Builder builder;

@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"NoType", [](V& v) { v.inputs[0].types = 0; }, "pass 'valid': input 'color': it accepts no type"},
         Spoiled{"UnknownType", [](V& v) { v.inputs[0].types = 1u << QUELL_TYPE_COUNT; },
                 "pass 'valid': input 'color': it has a type that is not known"},
-        Spoiled{"UnknownFlag", [](V& v) { v.inputs[0].flags = 4; },
+        Spoiled{"UnknownFlag", [](V& v) { v.inputs[0].flags = 8; },
                 "pass 'valid': input 'color': it has a flag that is not known"},
         Spoiled{"InputSameAs", [](V& v) { v.inputs[1].same_as = 0; },
                 "pass 'valid': input 'extra': only an output may be of the same type as an input"},
@@ -95,7 +95,9 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"SameAsCamera", [](V& v) { v.inputs[0].types |= QUELL_TYPE_BIT(QUELL_TYPE_CAMERA); },
                 "pass 'valid': output 'color': an output cannot be a camera: the interface has no place to write one"},
         Spoiled{"OptionalOutput", [](V& v) { v.outputs[0].flags = QUELL_PORT_OPTIONAL; },
-                "pass 'valid': output 'color': an output cannot be optional"}),
+                "pass 'valid': output 'color': an output cannot be optional"},
+        Spoiled{"OutputOfAnySize", [](V& v) { v.outputs[0].flags = QUELL_PORT_ANY_SIZE; },
+                "pass 'valid': output 'color': an output cannot be of any size: infer says which it has"}),
     kTestName);
 
 INSTANTIATE_TEST_SUITE_P(
