@@ -33,7 +33,10 @@ constexpr float kTiny = 1e-36F;            // added to squared distances, which 
 
 // Which terms a weight has, besides those of color and of the distance in pixels.
 struct Terms {
-  bool normal = false, wide_normals = false, position = false;
+  bool normal = false;
+  NormalTerm normal_term = NormalTerm::narrow_angle;
+  bool position = false;
+  bool z = false;  // of the position
 };
 
 // Rows from `top` on, each of kPlanes planes one after the other, from pixel `left` on, in the coordinates of the image.
@@ -94,9 +97,9 @@ inline void fill_outside(int x0, int x1, int y, const Tile& tile) {
 
 // Fills the rows of the tile that lie in the image.
 template <Terms kTerms>
-void gather(const Images& in, int radius, int y0, int y1, const Tile& tile) {
-  const int end = tile.left + kTileWidth + 2 * radius, x0 = std::max(0, tile.left), x1 = std::min(in.color.width, end);
-  for (int y = std::max(0, y0 - radius); y < std::min(in.color.height, y1 + radius); ++y) {
+void gather(const Images& in, const Settings& s, int y0, int y1, const Tile& tile) {
+  const int end = tile.left + kTileWidth + 2 * s.radius_x, x0 = std::max(0, tile.left), x1 = std::min(in.color.width, end);
+  for (int y = std::max(0, y0 - s.radius_y); y < std::min(in.color.height, y1 + s.radius_y); ++y) {
     fill_outside(tile.left, x0, y, tile);
     fill_outside(x1, end + kMaxLanes, y, tile);
     gather_row<kTerms>(in, y, x0, x1, tile);
@@ -128,7 +131,7 @@ Center load_center(const Settings& s, const float* pixel) {
 struct Differences {
   V color;                     // squared distance of color, and the part of the exponent that depends on the distance in pixels
   V chord;                     // squared distance of normals
-  V height, squared_distance;  // of positions: over the plane, scaled, and in all
+  V height, squared_distance;  // of positions: over the plane, scaled, or the squared difference of z; and in all
 };
 
 template <Terms kTerms>
@@ -136,7 +139,10 @@ HWY_INLINE Differences find_differences(const Center& center, const float* tap, 
   Differences d{};
   if constexpr (kTerms.position) {
     const V3 way = sub(center.position, get(tap + kPosition * kStride));
-    if constexpr (kTerms.normal) d.height = dot(way, center.plane);
+    if constexpr (kTerms.z)
+      d.height = hn::Mul(way.z, way.z);
+    else if constexpr (kTerms.normal)
+      d.height = dot(way, center.plane);
     d.squared_distance = dot_add(way, way, set(kTiny));
   }
   if constexpr (kTerms.normal) {
@@ -152,16 +158,20 @@ template <Terms kTerms>
 HWY_INLINE V find_exponent(const Settings& s, const Differences& d) {
   V e = d.color;
   if constexpr (kTerms.position) e = hn::MulAdd(d.squared_distance, set(s.position_factor), e);
-  if constexpr (kTerms.position && kTerms.normal) {
+  if constexpr (kTerms.position && kTerms.z) {
+    e = hn::MulAdd(d.height, set(s.z_factor), e);
+  } else if constexpr (kTerms.position && kTerms.normal) {
     // height^2 / distance^2, by an estimate r of 1 / distance^2 and a step of Newton's: (height r) (height (2 - distance^2 r))
     const V r = estimate_reciprocal(d.squared_distance);
     const V rest = hn::NegMulAdd(d.squared_distance, r, set(2.0F));
     e = hn::MulAdd(hn::Mul(d.height, r), hn::Mul(d.height, rest), e);
   }
-  if constexpr (kTerms.wide_normals)
+  if constexpr (kTerms.normal && kTerms.normal_term == NormalTerm::narrow_angle)
+    e = hn::MulAdd(angle_ratio_narrow(d.chord, set(s.normal_factor)), d.chord, e);
+  else if constexpr (kTerms.normal && kTerms.normal_term == NormalTerm::wide_angle)
     e = hn::MulAdd(squared_angle_wide(d.chord), set(s.normal_factor), e);
   else if constexpr (kTerms.normal)
-    e = hn::MulAdd(angle_ratio_narrow(d.chord, set(s.normal_factor)), d.chord, e);
+    e = hn::MulAdd(d.chord, set(s.normal_factor), e);
   return e;
 }
 
@@ -178,7 +188,7 @@ HWY_INLINE Sums sum_taps(const Settings& s, const Center& center, const float* t
   // Each round ends one tap, is in the midst of the next, and begins the one after that: the results that a tap would otherwise
   // wait for are there when it goes on.
   const auto begin = [&](int i) { return find_differences<kTerms>(center, tap + i, distances[i]); };
-  const int last = 2 * s.radius;
+  const int last = 2 * s.radius_x;
   Differences next = begin(0);
   V e = find_exponent<kTerms>(s, next);
   if (last > 0) next = begin(1);
@@ -194,14 +204,13 @@ HWY_INLINE Sums sum_taps(const Settings& s, const Center& center, const float* t
 // Filters the pixels [x, x + lanes) of row y; `end` is the first that is not wanted.
 template <Terms kTerms>
 void filter_pixels(const Images& in, const Settings& s, const FloatOutput& out, int x, int end, int y, const Tile& tile) {
-  const int r = s.radius;
   const Center center = load_center<kTerms>(s, tile.at(x, y));
   Sums sums{zero(), {zero(), zero(), zero()}};
   // Rows are summed by themselves: thousands of additions to one float would cost more digits than the weights' errors.
-  const TapRange rows = clamped_taps(y, r, out.height);
+  const TapRange rows = clamped_taps(y, s.radius_y, out.height);
   for (int dy = rows.first; dy <= rows.last; ++dy) {
-    const float* distances = s.pixel_distances.data() + static_cast<std::ptrdiff_t>(std::abs(dy)) * (2 * r + 1);
-    const Sums row = sum_taps<kTerms>(s, center, tile.at(x - r, y + dy), distances);
+    const float* distances = s.pixel_distances.data() + static_cast<std::ptrdiff_t>(std::abs(dy)) * (2 * s.radius_x + 1);
+    const Sums row = sum_taps<kTerms>(s, center, tile.at(x - s.radius_x, y + dy), distances);
     sums.weight = hn::Add(sums.weight, row.weight);
     sums.color = add(sums.color, row.color);
   }
@@ -216,19 +225,30 @@ void filter_tiles(const Images& in, const Settings& s, const FloatOutput& out, i
   for (int top = y0; top < y1; top += kTileHeight)
     for (int left = 0; left < out.width; left += kTileWidth) {
       const int bottom = std::min(y1, top + kTileHeight), right = std::min(out.width, left + kTileWidth);
-      const Tile tile{scratch, left - s.radius, top - s.radius};
-      gather<kTerms>(in, s.radius, top, bottom, tile);
+      const Tile tile{scratch, left - s.radius_x, top - s.radius_y};
+      gather<kTerms>(in, s, top, bottom, tile);
       for (int y = top; y < bottom; ++y)
         for (int x = left; x < right; x += lanes()) filter_pixels<kTerms>(in, s, out, x, right, y, tile);
     }
 }
 
+using Filter = void (*)(const Images& in, const Settings& s, const FloatOutput& out, int y0, int y1, float* scratch);
+
+template <NormalTerm kTerm>
+Filter find_filter(bool position, bool z) {
+  if (!position) return filter_tiles<Terms{true, kTerm, false, false}>;
+  return z ? filter_tiles<Terms{true, kTerm, true, true}> : filter_tiles<Terms{true, kTerm, true, false}>;
+}
+
 void FilterRows(const Images& in, const Settings& s, const FloatOutput& out, int y0, int y1, float* scratch) {
-  const bool position = in.position && (in.normal || s.position_factor > 0);
-  auto* filter = position ? filter_tiles<Terms{false, false, true}> : filter_tiles<Terms{}>;
-  if (in.normal) filter = position ? filter_tiles<Terms{true, false, true}> : filter_tiles<Terms{true, false, false}>;
-  if (in.normal && s.wide_normals)
-    filter = position ? filter_tiles<Terms{true, true, true}> : filter_tiles<Terms{true, true, false}>;
+  const bool z = in.position && s.compares_z, position = in.position && (in.normal || z || s.position_factor > 0);
+  Filter filter = position ? filter_tiles<Terms{.position = true}> : filter_tiles<Terms{}>;
+  if (z) filter = filter_tiles<Terms{.position = true, .z = true}>;
+  if (in.normal) {
+    filter = find_filter<NormalTerm::narrow_angle>(position, z);
+    if (s.normal_term == NormalTerm::wide_angle) filter = find_filter<NormalTerm::wide_angle>(position, z);
+    if (s.normal_term == NormalTerm::difference) filter = find_filter<NormalTerm::difference>(position, z);
+  }
   filter(in, s, out, y0, y1, scratch);
 }
 
@@ -238,8 +258,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace quell::joint_bilateral {
 
-std::size_t scratch_bytes(int radius) {
-  return static_cast<std::size_t>(kTileHeight + 2 * radius) * kPlanes * kStride * sizeof(float);
+std::size_t scratch_bytes(int radius_y) {
+  return static_cast<std::size_t>(kTileHeight + 2 * radius_y) * kPlanes * kStride * sizeof(float);
 }
 
 HWY_EXPORT(FilterRows);
