@@ -61,11 +61,9 @@ class Connector {
   }
 
   bool has_right_form(const Scope& scope, const WrittenPort& port, const quell_port_desc& desc, const Leaf& leaf) {
-    const bool is_array = desc.flags & QUELL_PORT_ARRAY;
-    if (is_array == port.is_list) return true;
-    const std::string label = "the input '" + port.name.text + "' of the pass '" + leaf.pass->id + "' ";
+    if (desc.flags & QUELL_PORT_ARRAY || !port.is_list) return true;  // a list of one may be written as one source
     errors_.error(port.value_where,
-                  label + (is_array ? "takes a list; expected [\"node.port\", ...]" : "takes one source, not a list"),
+                  "the input '" + port.name.text + "' of the pass '" + leaf.pass->id + "' takes one source, not a list",
                   scope.included_from());
     return false;
   }

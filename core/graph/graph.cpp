@@ -74,10 +74,13 @@ PortType Graph::type(const Endpoint& endpoint) const {
 
 Endpoint Graph::find(std::string_view wanted) const {
   std::vector<std::string> names;
+  std::vector<Endpoint> items;  // of the list that is called like that
   for (const Endpoint& endpoint : endpoints(*this)) {
     names.push_back(describe(endpoint));
     if (names.back() == wanted) return endpoint;
+    if (std::string_view(names.back()).substr(0, names.back().find('[')) == wanted) items.push_back(endpoint);
   }
+  if (items.size() == 1) return items[0];
   for (const GraphOutput& output : subgraph_outputs) {
     names.push_back(output.name);
     if (names.back() == wanted) return output.from;

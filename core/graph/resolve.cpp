@@ -122,12 +122,13 @@ bool Resolver::pick_item(const Scope& scope, const Text& source, const Leaf& lea
     return index.empty();
   }
   const std::size_t count = item_count(leaf, output);
+  if (index.empty() && count == 1) return true;
   const char* end = index.data() + index.size();
   const bool is_index =
       index.size() > 2 && std::from_chars(index.data() + 1, end, endpoint.item).ptr == end - 1 && index.back() == ']';
   if (is_index && endpoint.item >= 0 && static_cast<std::size_t>(endpoint.item) < count) return true;
-  std::string expected = "; expected '" + plain + "[0]'";
-  if (count > 1) expected += " to '" + plain + "[" + std::to_string(count - 1) + "]'";
+  std::string expected = "; expected '" + plain + "' or '" + plain + "[0]'";
+  if (count > 1) expected = "; expected '" + plain + "[0]' to '" + plain + "[" + std::to_string(count - 1) + "]'";
   if (count == 0)
     expected = ", as its node's input '" + std::string(leaf.input(static_cast<std::size_t>(output.same_as)).name) + "' is";
   tell(scope, source.where, "'" + plain + "' is a list of " + std::to_string(count) + expected);

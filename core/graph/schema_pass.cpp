@@ -174,16 +174,18 @@ Json version_schema(const quell_pass_desc& pass) {
 Json port_schema(const quell_port_desc& port, EdgeSchemas& edges) {
   const bool optional = port.flags & QUELL_PORT_OPTIONAL, is_array = port.flags & QUELL_PORT_ARRAY;
   const std::string takes = "Takes " + std::string(is_array ? "a list of " : "") + quell::describe(Types{port.types}) +
-                            (optional ? "; optional." : ".");
+                            (is_array ? ", or one alone" : "") + (optional ? "; optional." : ".");
   const std::string doc = port.doc;
   JsonMembers schema;
   schema.add("description", doc + (doc.empty() ? "" : "\n") + takes);
   schema.add("markdownDescription", to_markdown(doc) + (doc.empty() ? "" : "\n\n") + to_markdown(takes));
   Json source = edges.refer(port.types, optional);
   if (!is_array) return schema.add("allOf", std::vector<Json>{std::move(source)}).take();
-  schema.add("type", "array");
-  if (!optional) schema.add("minItems", 1);
-  return schema.add("items", std::move(source)).take();
+  JsonMembers list;
+  if (!optional) list.add("minItems", 1);
+  schema.add("if", JsonMembers().add("type", "array").take());
+  schema.add("then", list.add("items", source).take());
+  return schema.add("else", std::move(source)).take();
 }
 
 std::vector<std::string> required_inputs(const quell_pass_desc& pass) {

@@ -72,10 +72,8 @@ class Swap {
       left_out_.push_back(port.name.text);
       return;
     }
-    const bool takes_list = desc->flags & QUELL_PORT_ARRAY;
-    if (takes_list != port.is_list)
-      return tell("takes " + std::string(takes_list ? "a list" : "one source") + " as its " + name + "; '" + node_.name.text +
-                  "' has " + (takes_list ? "one source" : "a list") + " there");
+    if (port.is_list && !(desc->flags & QUELL_PORT_ARRAY))
+      return tell("takes one source as its " + name + "; '" + node_.name.text + "' has a list there");
     for (const std::optional<PortType>& type : arriving(port.name.text))
       if (type && !accepts(desc->types, *type))
         tell("takes " + quell::describe(Types{desc->types}) + " as its " + name + "; '" + node_.name.text + "' has " +

@@ -83,7 +83,7 @@ class Likeness {
       const V cosine = hn::NegMulAdd(set(0.5F), dot(chord, chord), set(1.0F));
       e = hn::NegMulAdd(set(s_.normal_power), hn::Log(D(), hn::Max(cosine, set(kSmallestCosine))), e);
     }
-    return hn::Add(exp2_negative(hn::Max(e, zero())), set(kFloor));
+    return hn::Add(exp2(hn::Neg(hn::Max(e, zero()))), set(kFloor));
   }
 
  private:

@@ -75,7 +75,7 @@ class Center {
       e = hn::NegMulAdd(set(s_.normal_power), hn::Log(D(), hn::Max(cosine, set(kSmallestCosine))), e);
     }
     // Normals that are a little longer than 1 make e negative.
-    return hn::IfThenElseZero(of, exp2_negative(hn::Max(e, zero())));
+    return hn::IfThenElseZero(of, exp2(hn::Neg(hn::Max(e, zero()))));
   }
 
  private:

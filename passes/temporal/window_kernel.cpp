@@ -34,7 +34,7 @@ HWY_INLINE V likeness(const Aligned& middle, const Aligned& frame, const FloatIm
     expected = hn::Add(expected, hn::IfThenElseZero(counts, spread));
   });
   const V squared = hn::Mul(hn::Mul(difference, difference), set(s.factor));
-  return exp2_negative(hn::Div(squared, hn::Max(expected, set(kSmallestVariance))));
+  return exp2(hn::Neg(hn::Div(squared, hn::Max(expected, set(kSmallestVariance)))));
 }
 
 void AverageRow(const Aligned& middle, std::span<const Aligned> frames, const Settings& s, int y, const Outputs& out) {

@@ -2,60 +2,17 @@
 // take.
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <limits>
 #include <numeric>
 #include <set>
 
-#include "quell/runtime/session.h"
 #include "tests/bench/ceilings.h"
 #include "tests/bench/figure.h"
-#include "tests/bench/graph_frames.h"
-#include "tests/bench/in_memory.h"
+#include "tests/bench/graph_times.h"
 
 namespace quell::bench {
 namespace {
 
 constexpr Size kSize{1920, 1080};
-constexpr int kLaps = 5;
-constexpr std::size_t kWarm = 3;  // frames of a lap after which the history is as long as it matters
-
-struct GraphTimes {
-  Plan plan;
-  std::string from;
-  double frame = std::numeric_limits<double>::infinity();    // seconds, all nodes and what is between them
-  double reading = std::numeric_limits<double>::infinity();  // of it: looking through the inputs for NaN
-  std::vector<double> nodes;                                 // seconds, in the order of the plan
-};
-
-/// Of a frame that is in the middle of a sequence: the mean over the last frames of a lap, of several laps the fastest.
-GraphTimes time_graph(const std::string& name, int threads) {
-  const Registry passes = load_plugins();
-  const auto graph = load_graph(std::filesystem::path(QUELL_SOURCE_DIR) / "graphs" / (name + ".json"), passes);
-  GraphFrames frames(*graph, kSize);
-  Nowhere sink;
-  Session session(graph, {.threads = threads, .schedule = Schedule::serial});
-  GraphTimes times;
-  for (int lap = 0; lap < kLaps; ++lap) {
-    const std::vector<FrameReport> reports = session.run(frames.lap(lap), frames, sink);
-    std::vector<double> nodes(session.plan()->nodes.size());
-    double frame = 0, reading = 0;
-    for (std::size_t i = 0; i < reports.size(); ++i) {
-      if (!reports[i].ok) throw Error(Fault::frame, name, reports[i].error);
-      if (i < kWarm) continue;
-      const auto share = 1 / static_cast<double>(reports.size() - kWarm);
-      frame += share * reports[i].seconds, reading += share * reports[i].read_seconds;
-      for (std::size_t node = 0; node < nodes.size(); ++node) nodes[node] += share * reports[i].node_seconds[node];
-    }
-    if (times.nodes.empty()) times.nodes.assign(nodes.size(), std::numeric_limits<double>::infinity());
-    std::ranges::transform(nodes, times.nodes, times.nodes.begin(), [](double a, double b) { return std::min(a, b); });
-    times.frame = std::min(times.frame, frame), times.reading = std::min(times.reading, reading);
-  }
-  times.plan = *session.plan();
-  times.from = frames.from();
-  return times;
-}
-
 double bytes_of(const Shape& shape) {
   if (!shape.present || !is_image(shape.type)) return 0;
   return 4.0 * info(shape.type).channels * shape.size.width * shape.size.height;
@@ -99,7 +56,7 @@ std::vector<Figure> graph_figures(const std::string& name, const std::set<std::s
   const int threads = acceptance_threads();
   // Before and after, because the neighbors of the machine come and go.
   const double before = measure_copy_bandwidth(threads);
-  const GraphTimes times = time_graph(name, threads);
+  const GraphTimes times = time_graph(name, kSize, threads);
   const double bytes_per_second = std::max(before, measure_copy_bandwidth(threads));
   char text[160];
   std::snprintf(text, sizeof text, "%.1f ms: nodes %.1f, inputs %.1f; frames of %s; copying %.1f GB/s", 1e3 * times.frame,

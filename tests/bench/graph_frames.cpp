@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 const fs::path kRoom = fs::path(QUELL_SOURCE_DIR) / "../shared/data/room";
 const fs::path kSample = fs::path(QUELL_SOURCE_DIR) / "graphs/sample";
-constexpr int kFirst = 2, kFrames = 6;  // 0.9 GB of the largest size; the first frame's motion leads to one that is not there
+constexpr int kFirst = 2;  // the first frame's motion leads to one that is not there
 
 template <class From, class To>
 void repeat(const From& from, const To& to) {
@@ -50,15 +50,17 @@ Camera enlarged(Camera camera, Size size) {
 
 }  // namespace
 
-GraphFrames::GraphFrames(const Graph& graph, Size size) {
+GraphFrames::GraphFrames(const std::vector<GraphInput>& inputs, Size size, int count) : count_(count) {
   const bool is_room = fs::is_directory(kRoom);
   from_ = is_room ? "the room" : "graphs/sample (the room is not beside the repository)";
   const std::unique_ptr<Sequence> sequence = Sequence::open(is_room ? kRoom : kSample);
-  for (const GraphInput& input : graph.inputs) sequence->expect(input.name, input.type);
-  for (const GraphInput& input : graph.inputs) {
-    if (!sequence->shape(input.name)) continue;
-    for (std::int64_t frame = kFirst; frame < kFirst + kFrames; ++frame) {
-      const Item item = sequence->read(input.name, frame, pool_);
+  for (const GraphInput& input : inputs) {
+    sequence->expect(input.name, input.type);
+    std::string source = input.name;
+    if (!sequence->shape(source) && !input.optional) source = name(input.type);
+    if (!sequence->shape(source)) continue;
+    for (std::int64_t frame = kFirst; frame < kFirst + count; ++frame) {
+      const Item item = sequence->read(source, frame, pool_);
       if (item.image())
         items_[input.name].emplace_back(enlarged(*item.image(), size, pool_));
       else
@@ -69,7 +71,7 @@ GraphFrames::GraphFrames(const Graph& graph, Size size) {
 
 std::vector<std::int64_t> GraphFrames::lap(int number) const {
   std::vector<std::int64_t> frames;
-  for (int i = 0; i < kFrames; ++i) frames.push_back(std::int64_t{number} * kFrames + i);
+  for (int i = 0; i < count_; ++i) frames.push_back(std::int64_t{number} * count_ + i);
   return frames;
 }
 
@@ -79,7 +81,7 @@ std::optional<Shape> GraphFrames::shape(std::string_view input) {
 }
 
 Item GraphFrames::read(std::string_view input, std::int64_t frame, BufferPool&) {
-  return items_.find(input)->second[static_cast<std::size_t>(frame % kFrames)];
+  return items_.find(input)->second[static_cast<std::size_t>(frame % count_)];
 }
 
 }  // namespace quell::bench

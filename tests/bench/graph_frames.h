@@ -16,8 +16,11 @@ namespace quell::bench {
 /// by no camera. They are served lap after lap; the frame after a lap's last is its first again, as after a cut.
 class GraphFrames final : public FrameSource {
  public:
-  /// Reads what the graph wants and the sequence has.
-  GraphFrames(const Graph& graph, Size size);
+  static constexpr int kFrames = 6;  // 0.9 GB of 1920 x 1080
+
+  /// Reads what is wanted and the sequence has. What it lacks but is required is served by the input that is named after its type
+  /// (diffuse and specular light by the color), which costs a graph the same.
+  GraphFrames(const std::vector<GraphInput>& inputs, Size size, int count = kFrames);
 
   /// The frames of a lap, counted from 0.
   std::vector<std::int64_t> lap(int number) const;
@@ -27,6 +30,7 @@ class GraphFrames final : public FrameSource {
   Item read(std::string_view input, std::int64_t frame, BufferPool& pool) override;
 
  private:
+  int count_;
   BufferPool pool_;
   std::map<std::string, std::vector<Item>, std::less<>> items_;  // by input
   std::string from_;                                             // for people

@@ -91,5 +91,6 @@ int main(int argc, char** argv) {
     add_ceiling_benchmarks();
     add_joint_bilateral_benchmarks();
     add_atrous_benchmarks();
+    add_memory_benchmarks();
   });
 }

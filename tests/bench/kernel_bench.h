@@ -9,6 +9,7 @@ namespace quell::bench {
 
 void add_joint_bilateral_benchmarks();
 void add_atrous_benchmarks();
+void add_memory_benchmarks();
 
 /// 1, 2, 4, ... and all processors.
 std::vector<int> thread_counts();

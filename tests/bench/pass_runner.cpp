@@ -17,10 +17,13 @@ std::string joined(const std::vector<std::string>& parts) {
 }
 
 std::string graph_text(const PassSetup& setup) {
-  std::vector<std::string> ports, outputs;
-  for (const auto& [port, item] : setup.inputs) ports.push_back("\"" + port + "\": \"" + port + "\"");
+  std::vector<std::string> inputs, ports, outputs;
+  for (const auto& [port, item] : setup.inputs) {
+    inputs.push_back("\"" + port + "\": \"" + std::string(name(shape_of(item).type)) + "\"");
+    ports.push_back("\"" + port + "\": \"" + port + "\"");
+  }
   for (const std::string& port : setup.outputs) outputs.push_back("\"" + port + "\": \"node." + port + "\"");
-  return R"({"quell": 1, "inputs": )" + joined(ports) + R"(, "nodes": {"node": {"pass": ")" + setup.pass + R"(", "in": )" +
+  return R"({"quell": 1, "inputs": )" + joined(inputs) + R"(, "nodes": {"node": {"pass": ")" + setup.pass + R"(", "in": )" +
          joined(ports) + R"(, "params": )" + setup.params + R"(}}, "outputs": )" + joined(outputs) + "}";
 }
 

@@ -7,6 +7,7 @@
 #include "quell/graph/schema.h"
 #include "quell/runtime/session.h"
 #include "quell/testing/synthetic.h"
+#include "tests/core/graph/graph_text.h"
 
 namespace quell {
 namespace {
@@ -37,6 +38,33 @@ TEST_P(ShippedGraph, RunsOverFramesAndStaysFinite) {
           for (int x = 0; x < image.width; ++x) ASSERT_TRUE(std::isfinite(image.at(x, y, c))) << name << " at " << x << ", " << y;
     }
   }
+}
+
+// Every parameter, set or not.
+std::string all_params(const Graph& graph, std::string_view node) {
+  const quell_pass_desc& pass = *test::node(graph, node).pass;
+  std::string text = std::string(pass.id) + " " + std::to_string(pass.version);
+  for (std::uint32_t i = 0; i < pass.param_count; ++i) {
+    const std::string name = QUELL_AT(quell_param_desc, pass.params, i)->name;
+    text += "\n" + name + ": " + test::param(graph, node, name);
+  }
+  return text;
+}
+
+// What validate shows must be what svgf does.
+TEST(ValidateGraph, GoesByWhatSvgfGoesBy) {
+  const Registry passes = load_plugins();
+  const auto svgf = load_graph(QUELL_SOURCE_DIR "/graphs/svgf.json", passes);
+  const auto validate = load_graph(QUELL_SOURCE_DIR "/graphs/validate.json", passes);
+  for (const char* node : {"slope", "reproject", "moments"}) EXPECT_EQ(all_params(*validate, node), all_params(*svgf, node));
+  const quell_pass_desc& reproject = *test::node(*svgf, "reproject").pass;
+  for (std::uint32_t i = 0; i < reproject.input_count; ++i) {
+    const std::string input = QUELL_AT(quell_port_desc, reproject.inputs, i)->name;
+    if (input == "history") continue;  // where validate fetches albedo instead of light
+    EXPECT_EQ(test::sources(*validate, "reproject", input), test::sources(*svgf, "reproject", input)) << input;
+  }
+  EXPECT_EQ(test::sources(*validate, "moments", "valid"), test::sources(*svgf, "moments", "valid"));
+  EXPECT_EQ(test::sources(*validate, "moments", "length"), test::sources(*svgf, "moments", "length"));
 }
 
 TEST(ShippedGraphs, AreThere) { EXPECT_FALSE(shipped_graphs().empty()); }

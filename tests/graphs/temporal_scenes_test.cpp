@@ -2,110 +2,20 @@
 // that every pixel is known exactly.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <functional>
-#include <map>
-#include <mutex>
-#include <set>
-
 #include "quell/runtime/session.h"
+#include "tests/graphs/temporal_scene.h"
 
-namespace quell {
+namespace quell::scene {
 namespace {
 
-constexpr Size kSize{12, 6};
 constexpr double kAlpha = 0.25;  // sums of a few frames' whole numbers are exact
-constexpr int kFrames = 6;       // from 1 on
 
-struct Pixel {
-  int x = 0, y = 0;
-};
-constexpr Pixel kFirefly{5, 3};
-constexpr Pixel operator+(Pixel a, Pixel b) { return {a.x + b.x, a.y + b.y}; }
-
-// What is seen in a pixel: an object, and where its point was one frame ago, relative to the pixel.
-struct Seen {
-  std::uint32_t id = 1;
-  Pixel motion;
-};
-
-struct Scene {
-  std::function<Seen(Pixel, std::int64_t frame)> see;
-  std::set<std::int64_t> cuts = {};                                        // where history has to end
-  std::set<std::int64_t> fireflies = {};                                   // frames in which kFirefly is far too bright
-  std::function<Camera(std::int64_t frame)> camera = {};                   // for graphs that find the motion themselves
-  std::function<std::array<float, 3>(Pixel, std::int64_t)> position = {};  // the same
-};
-
-float color(Pixel at, std::int64_t frame) { return static_cast<float>((7 * at.x + 13 * at.y + 29 * frame) % 64); }
-bool is_inside(Pixel at) { return at.x >= 0 && at.y >= 0 && at.x < kSize.width && at.y < kSize.height; }
-
-// Follows the point back from frame to frame until it was not seen.
-bool has_history(const Scene& scene, Pixel at, std::int64_t frame) {
-  const Seen seen = scene.see(at, frame);
-  const Pixel before = at + seen.motion;
-  return frame > 1 && !scene.cuts.contains(frame) && is_inside(before) && scene.see(before, frame - 1).id == seen.id;
-}
-bool is_firefly(const Scene& scene, Pixel at, std::int64_t frame) {
-  return at.x == kFirefly.x && at.y == kFirefly.y && scene.fireflies.contains(frame);
-}
 // Plane c. What is too bright counts as black.
 double expected(const Scene& scene, Pixel at, std::int64_t frame, int c) {
-  const double now = is_firefly(scene, at, frame) ? 0 : double{color(at, frame)} + c;
+  const double now = is_firefly(scene, at, frame) ? 0 : double{light(at, frame)} + c;
   if (!has_history(scene, at, frame)) return now;
   return kAlpha * now + (1 - kAlpha) * expected(scene, at + scene.see(at, frame).motion, frame - 1, c);
 }
-
-class SceneSource final : public FrameSource {
- public:
-  explicit SceneSource(const Scene& scene) : scene_(scene) {}
-
-  std::optional<Shape> shape(std::string_view input) override { return shape_of(read(input, 1, pool_)); }
-  Item read(std::string_view input, std::int64_t frame, BufferPool& pool) override {
-    if (input == "cut") return Values{scene_.cuts.contains(frame) ? 1.0 : 0.0};
-    if (input == "camera") return scene_.camera(frame);
-    if (input == "id") {
-      Image image(QUELL_TYPE_ID, kSize, pool);
-      for_each([&](Pixel at) { image.writable_ids().at(at.x, at.y) = scene_.see(at, frame).id; });
-      return image;
-    }
-    Image image(*port_type(input), kSize, pool);
-    const FloatOutput to = image.writable_floats();
-    for_each([&](Pixel at) {
-      for (int c = 0; c < to.channels; ++c) to.at(at.x, at.y, c) = number(image.type(), at, frame, c);
-    });
-    return image;
-  }
-  static void for_each(const std::function<void(Pixel)>& call) {
-    for (int y = 0; y < kSize.height; ++y)
-      for (int x = 0; x < kSize.width; ++x) call({x, y});
-  }
-
- private:
-  float number(PortType type, Pixel at, std::int64_t frame, int c) const {
-    if (type == QUELL_TYPE_COLOR) return is_firefly(scene_, at, frame) ? 1e6F : color(at, frame) + static_cast<float>(c);
-    if (type == QUELL_TYPE_POSITION) return scene_.position(at, frame)[static_cast<std::size_t>(c)];
-    const Pixel motion = scene_.see(at, frame).motion;
-    return static_cast<float>(c == 0 ? motion.x : motion.y);
-  }
-  const Scene& scene_;
-  BufferPool pool_;
-};
-
-class KeepingSink final : public FrameSink {
- public:
-  void write(std::string_view output, std::int64_t frame, const Item& item) override {
-    const std::scoped_lock lock(mutex_);
-    images_[{std::string(output), frame}] = *item.image();
-  }
-  float at(const std::string& output, std::int64_t frame, Pixel pixel, int c = 0) const {
-    return images_.at({output, frame}).floats().at(pixel.x, pixel.y, c);
-  }
-
- private:
-  std::map<std::pair<std::string, std::int64_t>, Image> images_;
-  std::mutex mutex_;
-};
 
 const std::string kReproject = R"(
     "reproject": { "pass": "reproject", "in": {
@@ -164,12 +74,6 @@ const std::string kMeans = R"({ "quell": 1, "inputs": { "color": "color", "motio
       "params": { "alpha": 0, "max_length": 64 } } },
   "outputs": { "mean": "blend.color", "length": "blend.length", "moments": "moments.moments" } })";
 
-std::vector<std::int64_t> first_frames(int count) {
-  std::vector<std::int64_t> frames;
-  for (int frame = 1; frame <= count; ++frame) frames.push_back(frame);
-  return frames;
-}
-
 // Every pixel of every frame, node after node and with everything at a time.
 void expect_exact(const std::string& text, const Scene& scene, std::vector<std::int64_t> cuts = {}) {
   const auto graph = parse(text);
@@ -181,7 +85,7 @@ void expect_exact(const std::string& text, const Scene& scene, std::vector<std::
     const std::vector<std::int64_t> frames = first_frames(kFrames);
     for (const FrameReport& report : Session(graph, options).run(frames, source, sink)) ASSERT_TRUE(report.ok) << report.error;
     for (const std::int64_t frame : frames)
-      SceneSource::for_each([&](Pixel at) {
+      for_each_pixel([&](Pixel at) {
         for (int c = 0; c < 3; ++c)
           EXPECT_EQ(sink.at("color", frame, at, c), static_cast<float>(expected(scene, at, frame, c)))
               << "frame " << frame << ", pixel " << at.x << ", " << at.y << ", plane " << c;
@@ -197,7 +101,7 @@ struct Sums {
 Sums sum(const Scene& scene, Pixel at, std::int64_t frame) {
   Sums sums;
   if (has_history(scene, at, frame)) sums = sum(scene, at + scene.see(at, frame).motion, frame - 1);
-  const double value = color(at, frame), l = value + 0.7152 + 2 * 0.0722;  // the planes are value + 0, 1, 2
+  const double value = light(at, frame), l = value + 0.7152 + 2 * 0.0722;  // the planes are value + 0, 1, 2
   return {sums.length + 1, sums.color + value, sums.luminance + l, sums.square + l * l};
 }
 
@@ -213,7 +117,7 @@ void expect_means(const Scene& scene, int count = kFrames) {
     ASSERT_TRUE(report.ok) << report.error;
   const double error = relative_error(count);
   for (const std::int64_t frame : frames)
-    SceneSource::for_each([&](Pixel at) {
+    for_each_pixel([&](Pixel at) {
       const Sums want = sum(scene, at, frame);
       const std::string where =
           "frame " + std::to_string(frame) + ", pixel " + std::to_string(at.x) + ", " + std::to_string(at.y);
@@ -223,21 +127,6 @@ void expect_means(const Scene& scene, int count = kFrames) {
       expect_near(sink.at("moments", frame, at, 0), want.luminance / want.length);
       expect_near(sink.at("moments", frame, at, 1), want.square / want.length);
     });
-}
-
-// How many pixels of a frame begin anew, so that a scene shows what it is about.
-int count_new(const Scene& scene, std::int64_t frame) {
-  int count = 0;
-  SceneSource::for_each([&](Pixel at) { count += has_history(scene, at, frame) ? 0 : 1; });
-  return count;
-}
-
-const auto at_rest = [](Pixel, std::int64_t) { return Seen{}; };
-
-// 3 x 2 pixels that move to the right by one pixel a frame, over a background at rest.
-Seen see_moving_object(Pixel at, std::int64_t frame) {
-  const bool is_object = at.x >= frame && at.x < frame + 3 && (at.y == 2 || at.y == 3);
-  return is_object ? Seen{2, {-1, 0}} : Seen{1, {0, 0}};
 }
 
 Camera flat_camera(double x) {
@@ -258,8 +147,8 @@ TEST(TemporalScenes, TheFirstFrameIsWhatWasRendered) {
 TEST(TemporalScenes, AStaticSceneHasTheGeometricMeanOfItsFrames) {
   const Scene scene{at_rest};
   EXPECT_EQ(count_new(scene, 2), 0);
-  double sum = color({4, 3}, 1);
-  for (int frame = 2; frame <= kFrames; ++frame) sum = sum * 0.75 + 0.25 * color({4, 3}, frame);
+  double sum = light({4, 3}, 1);
+  for (int frame = 2; frame <= kFrames; ++frame) sum = sum * 0.75 + 0.25 * light({4, 3}, frame);
   EXPECT_EQ(expected(scene, {4, 3}, kFrames, 0), sum);
   expect_exact(kGiven, scene);
   expect_means(scene);
@@ -343,4 +232,4 @@ TEST(TemporalScenes, NothingLastsBeyondAFrameInWhichPixelsHadToBeReplaced) {
 }
 
 }  // namespace
-}  // namespace quell
+}  // namespace quell::scene

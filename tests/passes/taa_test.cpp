@@ -25,15 +25,16 @@ struct Case {
   std::string box = "rounded", limit = "clip";
   double alpha = 0.1, k = 1;
   bool weigh = true, with_valid = true;
+  Size size = kSize;
 };
 
 PassTest make(const Case& c) {
   PassTest pass("taa");
   pass.set("alpha", c.alpha).set("box", c.box).set("limit", c.limit).set("k", c.k).set("weigh", c.weigh);
-  pass.input("color", test_image(QUELL_TYPE_COLOR, kSize, scene::color));
-  pass.input("history", test_image(QUELL_TYPE_COLOR, kSize, scene::other_color));
+  pass.input("color", test_image(QUELL_TYPE_COLOR, c.size, scene::color));
+  pass.input("history", test_image(QUELL_TYPE_COLOR, c.size, scene::other_color));
   if (c.with_valid)
-    pass.input("valid", test_image(QUELL_TYPE_MASK, kSize, [](int x, int y, int) { return is_valid(x, y) ? 1.0F : 0.0F; }));
+    pass.input("valid", test_image(QUELL_TYPE_MASK, c.size, [](int x, int y, int) { return is_valid(x, y) ? 1.0F : 0.0F; }));
   return pass;
 }
 
@@ -43,7 +44,7 @@ struct Box {
 
 Box box_of(const Case& c, int x, int y, std::size_t component) {
   std::vector<double> square, cross;
-  scene::around(kSize, x, y, 1, [&](int qx, int qy) {
+  scene::around(c.size, x, y, 1, [&](int qx, int qy) {
     const double value = scene::to_ycocg(scene::at(scene::color, qx, qy))[component];
     square.push_back(value);
     if (std::abs(qx - x) + std::abs(qy - y) <= 1) cross.push_back(value);
@@ -91,11 +92,12 @@ TEST(Taa, EqualsItsFormulaInDouble) {
   std::vector<Case> cases{{.alpha = 0.5, .weigh = false, .with_valid = false}, {.alpha = 0}, {.alpha = 1}, {.limit = "none"}};
   for (const char* box : {"range", "rounded", "variance"})
     for (const char* limit : {"clip", "clamp"}) cases.push_back({.box = box, .limit = limit, .k = 0.8});
+  for (const Size size : {Size{1, 1}, Size{5, 16}, Size{16, 3}}) cases.push_back({.box = "variance", .size = size});
   for (const Case& c : cases) {
     PassTest pass = make(c);
     pass.run();
-    for (int y = 0; y < kSize.height; ++y)
-      for (int x = 0; x < kSize.width; ++x) {
+    for (int y = 0; y < c.size.height; ++y)
+      for (int x = 0; x < c.size.width; ++x) {
         const scene::Color want = expected(c, x, y);
         for (int i = 0; i < 3; ++i)
           ASSERT_NEAR(pass.output("color").at(x, y, i), want[static_cast<std::size_t>(i)], 5e-6)

@@ -31,6 +31,7 @@ struct Case {
   std::set<std::string> without = {};
   int radius = 1;
   double k = 2;
+  Size size = kSize;
   bool has(const std::string& input) const { return without.count(input) == 0; }
 };
 
@@ -39,13 +40,14 @@ PassTest make(const Case& c) {
   pass.set("radius", c.radius).set("k", c.k);
   const auto color = [](int i) { return [i](int x, int y, int k) { return color_of(i, x, y, k); }; };
   const auto variance = [](int i) { return [i](int x, int y, int) { return variance_of(i, x, y); }; };
-  pass.input("color", test_image(QUELL_TYPE_COLOR, kSize, color(-1)));
-  if (c.has("variance")) pass.input("variance", test_image(QUELL_TYPE_VARIANCE, kSize, variance(-1)));
+  pass.input("color", test_image(QUELL_TYPE_COLOR, c.size, color(-1)));
+  if (c.has("variance")) pass.input("variance", test_image(QUELL_TYPE_VARIANCE, c.size, variance(-1)));
   for (int i = 0; i < kFrames && c.has("frames"); ++i) {
-    pass.input("frames", test_image(QUELL_TYPE_COLOR, kSize, color(i)));
+    pass.input("frames", test_image(QUELL_TYPE_COLOR, c.size, color(i)));
     if (c.has("valid"))
-      pass.input("valid", test_image(QUELL_TYPE_MASK, kSize, [i](int x, int y, int) { return valid_of(i, x, y) ? 1.0F : 0.0F; }));
-    if (c.has("variances")) pass.input("variances", test_image(QUELL_TYPE_VARIANCE, kSize, variance(i)));
+      pass.input("valid",
+                 test_image(QUELL_TYPE_MASK, c.size, [i](int x, int y, int) { return valid_of(i, x, y) ? 1.0F : 0.0F; }));
+    if (c.has("variances")) pass.input("variances", test_image(QUELL_TYPE_VARIANCE, c.size, variance(i)));
   }
   return pass;
 }
@@ -58,7 +60,7 @@ double weight(const Case& c, int frame, int x, int y) {
   if (c.has("valid") && !valid_of(frame, x, y)) return 0;
   if (!c.has("variance")) return 1;
   double d = 0, v = 0;
-  scene::around(kSize, x, y, c.radius, [&](int qx, int qy) {
+  scene::around(c.size, x, y, c.radius, [&](int qx, int qy) {
     if (c.has("valid") && !valid_of(frame, qx, qy)) return;
     d += luminance_of(frame, qx, qy) - luminance_of(-1, qx, qy);
     v += double{variance_of(-1, qx, qy)} + variance_of(c.has("variances") ? frame : -1, qx, qy);
@@ -88,18 +90,21 @@ Expected expected(const Case& c, int x, int y) {
 // A weight errs by 4e-6 (2^x) and by its exponent's: a difference of sums of up to 81 luminances, 2e-6 each, squared over the
 // variance: 1e-4 where the exponent is not yet large.
 TEST(Window, EqualsItsFormulaInDouble) {
-  const std::array<Case, 7> cases{Case{},
-                                  {.without = {"valid"}, .k = 1},
-                                  {.without = {"variances"}, .radius = 0, .k = 0.5},
-                                  {.without = {"variance"}},
-                                  {.without = {"variance", "variances", "valid"}},
-                                  {.without = {"frames"}},
-                                  {.radius = 4, .k = 3}};
+  const std::array<Case, 10> cases{Case{},
+                                   {.without = {"valid"}, .k = 1},
+                                   {.without = {"variances"}, .radius = 0, .k = 0.5},
+                                   {.without = {"variance"}},
+                                   {.without = {"variance", "variances", "valid"}},
+                                   {.without = {"frames"}},
+                                   {.radius = 4, .k = 3},
+                                   {.size = {1, 1}},
+                                   {.radius = 3, .size = {5, 16}},
+                                   {.size = {16, 3}}};
   for (std::size_t i = 0; i < cases.size(); ++i) {
     PassTest pass = make(cases[i]);
     pass.run();
-    for (int y = 0; y < kSize.height; ++y)
-      for (int x = 0; x < kSize.width; ++x) {
+    for (int y = 0; y < cases[i].size.height; ++y)
+      for (int x = 0; x < cases[i].size.width; ++x) {
         const Expected want = expected(cases[i], x, y);
         for (int c = 0; c < 3; ++c)
           ASSERT_NEAR(pass.output("color").at(x, y, c), want.color[static_cast<std::size_t>(c)], 1e-4)

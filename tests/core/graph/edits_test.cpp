@@ -133,6 +133,21 @@ TEST(Swap, IsRefusedWhereThePortsDoNotAllowIt) {
               HasSubstr("the pass 'merge' needs an input 'colors' (color or albedo)"));
 }
 
+TEST(Swap, TakesOneSourceForAListButNoListForOneSource) {
+  const auto text = [](const std::string& pass, const std::string& sources) {
+    return R"({ "quell": 1, "inputs": { "color": "color" },
+                "nodes": { "x": { "pass": ")" +
+           pass + R"(", "in": { "image": )" + sources + R"( } } },
+                "outputs": { "o": "x.image" } })";
+  };
+  const auto graph = change(text("copy", "\"color\""), {.swap = {"x=copies"}});
+  EXPECT_THAT(test::sources(*graph, "x", "image"), ElementsAre("color"));
+  EXPECT_THAT(outputs(*graph), ElementsAre("x.image[0]"));
+  EXPECT_THAT(outputs(*change(text("copies", "\"color\""), {.swap = {"x=copy"}})), ElementsAre("x.image"));
+  EXPECT_THAT(refusal(text("copies", "[\"color\"]"), {.swap = {"x=copy"}}),
+              HasSubstr("the pass 'copy' takes one source as its input 'image'; 'x' has a list there"));
+}
+
 TEST(Swap, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT(refusal(kGraph, {.swap = {"filtr=smooth"}}),
               HasSubstr("--swap:1:1: error: the graph has no node 'filtr'; did you mean 'filter'?"));
@@ -221,6 +236,16 @@ TEST(Bypass, AStartWithNothingIsAnErrorWhereThePortNeedsAValue) {
   EXPECT_THAT(refusal(text, {.bypass = {"a"}}),
               HasSubstr("--bypass:1:1: error: the input 'color' of the pass 'filter' is not optional, so it cannot start with "
                         "\"none\""));
+}
+
+TEST(Bypass, TakesListsOfOneWithAndWithoutAnIndex) {
+  const std::string text = R"({ "quell": 1, "inputs": { "color": "color" },
+    "nodes": { "m": { "pass": "merge", "in": { "colors": "color" } },
+               "x": { "pass": "merge", "in": { "colors": ["m.parts", "m.parts[0]"] } } },
+    "outputs": { "x": "x.sum", "y": "m.parts" } })";
+  const auto graph = change(text, {.bypass = {"m"}});
+  EXPECT_THAT(test::sources(*graph, "x", "colors"), ElementsAre("color", "color"));
+  EXPECT_THAT(outputs(*graph), ElementsAre("x.sum", "color"));
 }
 
 TEST(Bypass, TakesElementsOfListsForTheirOwn) {

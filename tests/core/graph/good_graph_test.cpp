@@ -126,6 +126,19 @@ TEST_F(GoodGraph, ConnectsPortArrays) {
   EXPECT_EQ(type("second.image"), "albedo");
 }
 
+TEST_F(GoodGraph, TakesOneSourceForAListAndAListOfOneWithoutAnIndex) {
+  load("lists_of_one");
+  EXPECT_THAT(sources("merge", "colors"), ElementsAre("color"));
+  EXPECT_THAT(sources("merge", "extra"), ElementsAre("merge.parts[0]@1 none"));
+  EXPECT_THAT(sources("indexed", "image"), ElementsAre("merge.parts[0]"));
+  EXPECT_THAT(sources("plain", "image"), ElementsAre("merge.parts[0]"));
+  EXPECT_THAT(sources("late", "items"), ElementsAre("plain.image@2 merge.parts[0]"));
+  EXPECT_THAT(sources("absent", "items"), ElementsAre("albedo"));
+  EXPECT_EQ(type("plain.image"), "color");
+  EXPECT_EQ(graph->describe(graph->outputs[0].from), "late.parts[0]");
+  EXPECT_EQ(graph->find("merge.parts"), graph->find("merge.parts[0]"));
+}
+
 // Elements of the output that mirrors the list keep their places, too.
 TEST_F(GoodGraph, LeavesOutTheElementsOfAListThatAreNotConnectedAndNoOthers) {
   load("absent_elements");

@@ -98,8 +98,16 @@ class Maker {
     with_input(label + " with an unknown key", false, port.name, edge(R"(, "dealy": 1)"));
     with_input(label + " a number", false, port.name, is_array ? "[1]" : "1");
     with_input(label + " with spaces", false, port.name, is_array ? "[\"in x\"]" : "\"in x\"");
-    with_input(label + (is_array ? " not a list" : " a list"), false, port.name, is_array ? source(i) : "[" + source(i) + "]");
-    if (is_array) with_input(label + " an empty list", optional, port.name, "[]");
+    if (!is_array) return with_input(label + " a list", false, port.name, "[" + source(i) + "]");
+    with_input(label + " an empty list", optional, port.name, "[]");
+    with_input(label + " a list of lists", false, port.name, "[[" + source(i) + "]]");
+    with_input(label + " not a list", true, port.name, source(i));
+    with_input(label + " not a list, with spaces", false, port.name, "\"in x\"");
+    with_input(label + " not a list, but a number", false, port.name, "1");
+    with_input(label + " not a list, of none at first", optional, port.name,
+               R"({ "from": )" + source(i) + R"(, "delay": 1, "initial": "none" })");
+    with_input(label + " not a list, delayed without an initial value", false, port.name,
+               R"({ "from": )" + source(i) + R"(, "delay": 1 })");
   }
 
   void vary_param(const quell_param_desc& param) {

@@ -101,6 +101,10 @@ const PassInfo kSplit{.id = "split",
                       .inputs = {{.name = "items", .types = kAnyFloatImage, .optional = true, .array = true}},
                       .outputs = {{.name = "parts", .array = true, .same_as = "items"}}};
 const PassInfo kCopy{.id = "copy", .inputs = {{"image", kAnyImage}}, .outputs = {{.name = "image", .same_as = "image"}}};
+// Like copy, of several images.
+const PassInfo kCopies{.id = "copies",
+                       .inputs = {{.name = "image", .types = kAnyImage, .array = true}},
+                       .outputs = {{.name = "image", .array = true, .same_as = "image"}}};
 const PassInfo kMeter{.id = "meter",
                       .inputs = {{"color", kAnyFloatImage}, {.name = "previous", .types = kValue, .optional = true}},
                       .outputs = {{"value", kValue}}};
@@ -136,6 +140,7 @@ Registry make_registry() {
                                                 plain<4>(kMeter),
                                                 plain<5>(kSelect),
                                                 plain<6>(kSplit),
+                                                plain<7>(kCopies),
                                                 detail::Descriptor::make<Smooth, SmoothParams>(kSmooth).get()};
   Registry registry;
   registry.add(all.data(), static_cast<std::uint32_t>(all.size()));
