@@ -81,27 +81,30 @@ constexpr int kMaxFeatures = 10;  // 1, normal, position, its square
 constexpr int kPixelsPerFeature = 4;
 constexpr double kSmallestRange = 1e-6;  // of positions, over their size: what floats tell apart
 
-// From -1 to 1: a hash (the finalizer of MurmurHash3) of a pixel, a feature and a frame.
-double noise_at(int x, int y, int feature, std::uint32_t frame) {
-  const auto mix = [](std::uint32_t h) {
-    h ^= h >> 16, h *= 0x85ebca6bU, h ^= h >> 13, h *= 0xc2b2ae35U;
-    return h ^ (h >> 16);
-  };
-  std::uint32_t h = mix(frame + 0x9e3779b9U);
-  h = mix(h ^ static_cast<std::uint32_t>(x)), h = mix(h ^ static_cast<std::uint32_t>(y));
-  h = mix(h ^ static_cast<std::uint32_t>(feature));
-  return h * (2 / 4294967295.0) - 1;
+// The finalizer of MurmurHash3.
+std::uint32_t mix(std::uint32_t h) {
+  h ^= h >> 16, h *= 0x85ebca6bU, h ^= h >> 13, h *= 0xc2b2ae35U;
+  return h ^ (h >> 16);
+}
+// A hash of a pixel's place and of the frame's number.
+std::uint32_t hash_pixel(int x, int y, std::uint32_t frame) {
+  return mix(mix(mix(frame + 0x9e3779b9U) ^ static_cast<std::uint32_t>(x)) ^ static_cast<std::uint32_t>(y));
+}
+// From -1 to 1, for a pixel's feature.
+double noise_of(std::uint32_t pixel, int feature) {
+  return mix(pixel ^ static_cast<std::uint32_t>(feature) * 0x9e3779b9U) * (2 / 4294967295.0) - 1;
 }
 
 struct Images {
   FloatImage color, normal, position;
 
   bool counts(int x, int y) const {
-    float sum = 0, normal_sum = 1;
+    float sum = 0;
+    bool has_surface = !normal;
     for (const FloatImage& image : {color, normal, position})
-      for (int c = 0; image && c < 3; ++c) sum += 0 * image.at(x, y, c);
-    if (normal) normal_sum = std::abs(normal.at(x, y, 0)) + std::abs(normal.at(x, y, 1)) + std::abs(normal.at(x, y, 2));
-    return sum == 0 && normal_sum > 0;
+      for (int c = 0; image && c < 3; ++c) sum += 0 * image.at(x, y, c);  // NaN unless finite
+    for (int c = 0; normal && c < 3; ++c) has_surface = has_surface || normal.at(x, y, c) != 0;
+    return sum == 0 && has_surface;
   }
 };
 
@@ -115,18 +118,18 @@ struct Fit {
   double smallest[3] = {}, scale[3] = {};
   double weights[least_squares::kSides][least_squares::kMaxUnknowns] = {};
 
-  // `features` has room for kMaxFeatures; returns how many they are.
-  int find_features(const Images& in, int x, int y, double* features) const {
-    int n = 0;
-    features[n++] = 1;
-    for (int c = 0; in.normal && c < 3; ++c) features[n++] = in.normal.at(x, y, c);
-    if (!in.position) return n;
-    for (int c = 0; c < 3; ++c) {
+  // Calls use(i, value) for each feature of a pixel. They are not put side by side in memory, where reading them would wait.
+  template <class Use>
+  void each_feature(const Images& in, int x, int y, const Use& use) const {
+    use(0, 1.0);
+    if (count == 1) return;
+    int i = 1;
+    for (int c = 0; in.normal && c < 3; ++c) use(i++, in.normal.at(x, y, c));
+    for (int c = 0; in.position && c < 3; ++c) {
       const double scaled = (in.position.at(x, y, c) - smallest[c]) * scale[c];
-      features[n] = scaled, features[n + 3] = scaled * scaled;
-      ++n;
+      use(i, scaled), use(i + 3, scaled * scaled);
+      ++i;
     }
-    return n + 3;
   }
 };
 
@@ -176,14 +179,13 @@ class Regress final : public Pass {
     const Fit fit = find_fit(in, {left, top, std::min(left + block, width), std::min(top + block, height)}, frame, scratch);
     for (int py = own.top; py < own.bottom; ++py)
       for (int px = own.left; px < own.right; ++px) {
+        double color[3] = {};
+        fit.each_feature(in, px, py, [&](int i, double feature) {
+          for (int c = 0; c < 3; ++c) color[c] += fit.weights[c][i] * feature;
+        });
         const bool counts = in.counts(px, py);
-        double features[kMaxFeatures];
-        fit.find_features(in, px, py, features);
-        for (int c = 0; c < 3; ++c) {
-          double color = 0;
-          for (int i = 0; i < fit.count; ++i) color += fit.weights[c][i] * features[i];
-          out.at(px, py, c) = counts ? static_cast<float>(std::max(color, 0.0)) : in.color.at(px, py, c);
-        }
+        for (int c = 0; c < 3; ++c)
+          out.at(px, py, c) = counts ? static_cast<float>(std::max(color[c], 0.0)) : in.color.at(px, py, c);
       }
   }
 
@@ -198,11 +200,11 @@ class Regress final : public Pass {
     for (int y = rect.top; y < rect.bottom; ++y)
       for (int x = rect.left; x < rect.right; ++x) {
         if (!in.counts(x, y)) continue;
-        double features[kMaxFeatures];
-        fit.find_features(in, x, y, features);
-        columns[row] = 1;
-        for (int i = 1; i < fit.count; ++i)
-          columns[static_cast<std::size_t>(i) * rows + row] = features[i] + params_.noise * noise_at(x, y, i, frame);
+        const std::uint32_t hash = hash_pixel(x, y, frame);
+        fit.each_feature(in, x, y, [&](int i, double feature) {
+          const double noise = i > 0 ? params_.noise * noise_of(hash, i) : 0;
+          columns[static_cast<std::size_t>(i) * rows + row] = feature + noise;
+        });
         for (int c = 0; c < 3; ++c) columns[static_cast<std::size_t>(fit.count + c) * rows + row] = in.color.at(x, y, c);
         ++row;
       }
