@@ -1,4 +1,4 @@
-// Golub & Van Loan, "Matrix Computations", sections 5.1 and 5.3: reflections turn the columns of A one after the other into those
+// Golub & Van Loan, "Matrix Computations", sections 5.1 to 5.3: reflections turn the columns of A one after the other into those
 // of a triangle R, and the right-hand sides with them.
 #include "passes/spatial/least_squares.h"
 

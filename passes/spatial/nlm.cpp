@@ -31,7 +31,9 @@ struct Params {
           "How much of the differences that noise alone makes is taken off; 1: all that is expected, 0: none.");
     field("cancellation", cancellation,
           Choices{{"conservative", "V + min(V, V'), as published: noise of brighter neighbors does not pass for likeness"},
-                  {"symmetric", "V + V': what is expected of two pixels of equal mean; p and q weigh the same for each other"}},
+                  {"symmetric",
+                   "V + V': what is expected of two pixels of equal mean; without features p and q weigh the same for each"
+                   " other"}},
           "Of which variances alpha is a factor.");
     field("k_feature", k_feature, Range<double>{1e-3, 1e3}, "1",
           "Tolerated difference of a feature, in what its gradient or its noise explains.");

@@ -1,6 +1,6 @@
 // Blockwise regression: in each block of pixels the color is the best linear function of features.
 // Source:  Koskela et al., "Blockwise Multi-Order Feature Regression for Real-Time Path-Tracing Reconstruction", ACM TOG 38(5),
-//          2019, sections 3.2 to 3.4, and its code, bmfr.cl: the features, the offsets of blocks, noise against rank deficiency.
+//          2019, and its code, bmfr.cl: the features, the offsets of blocks, noise against rank deficiency.
 // Departs: see kInfo.source.
 // Cost:    some 350 multiply-adds in double a pixel.
 #include <algorithm>
