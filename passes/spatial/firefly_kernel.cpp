@@ -112,7 +112,9 @@ HWY_INLINE Limits find_limits(const Settings& s, const Window& window, int x, in
   const Mask known = hn::Ge(taps, set(2.0F));
   const V infinity = hn::Inf(D());
   V lower = hn::Sub(mean, way_to_limit), upper = hn::Add(mean, way_to_limit);
-  if (s.method == Method::bound) lower = hn::Neg(infinity), upper = hn::Max(upper, set(s.floor));
+  // Not Max: of NaN and the floor, which is for what is not finite in the window, it would make the floor.
+  if (s.method == Method::bound)
+    lower = hn::Neg(infinity), upper = hn::IfThenElse(hn::Lt(upper, set(s.floor)), set(s.floor), upper);
   return {hn::IfThenElse(known, lower, hn::Neg(infinity)), hn::IfThenElse(known, upper, infinity)};
 }
 
