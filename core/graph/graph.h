@@ -98,7 +98,8 @@ struct Graph {
   std::string describe(const Endpoint& endpoint) const;
   /// The type that the endpoint carries ("same as input X" resolved).
   PortType type(const Endpoint& endpoint) const;
-  /// Finds "node.port", "node.port[i]" (of a list of one also without the index), "subgraph.output" or a graph input. Throws Error(usage) with suggestions.
+  /// Finds "node.port", "node.port[i]" (of a list of one also without the index), "subgraph.output" or a graph input. Throws
+  /// Error(usage) with suggestions.
   Endpoint find(std::string_view wanted) const;
 };
 
