@@ -1,8 +1,11 @@
 // Every graph that ships loads, plans and runs, on made-up frames of a size that fits no vector.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <string_view>
 
 #include "quell/graph/schema.h"
 #include "quell/runtime/session.h"
@@ -21,23 +24,39 @@ std::vector<std::filesystem::path> shipped_graphs() {
 
 class ShippedGraph : public ::testing::TestWithParam<std::filesystem::path> {};
 
+class SyntheticFrames final : public FrameSource {
+ public:
+  explicit SyntheticFrames(const Graph& graph) : graph_(graph) {}
+  std::optional<Shape> shape(std::string_view input) override { return shape_of(item(input, 0)); }
+  Item read(std::string_view input, std::int64_t frame, BufferPool&) override { return item(input, frame); }
+
+ private:
+  Item item(std::string_view name, std::int64_t frame) const {
+    const auto input = std::ranges::find(graph_.inputs, name, &GraphInput::name);
+    return synthetic(input->type, {37, 29}, static_cast<std::uint32_t>(frame));
+  }
+  const Graph& graph_;
+};
+
+class FiniteSink final : public FrameSink {
+ public:
+  void write(std::string_view output, std::int64_t frame, const Item& item) override {
+    if (!item.image() || item.image()->type() == QUELL_TYPE_ID) return;
+    const FloatImage image = item.image()->floats();
+    for (int c = 0; c < image.channels; ++c)
+      for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+          if (!std::isfinite(image.at(x, y, c))) ADD_FAILURE() << output << " of frame " << frame << " at " << x << ", " << y;
+  }
+};
+
 TEST_P(ShippedGraph, RunsOverFramesAndStaysFinite) {
   const Registry passes = load_plugins();
   const auto graph = load_graph(GetParam(), passes);
   EXPECT_FALSE(graph->doc.empty()) << "a graph says what it does and where it comes from";
-  Session session(graph);
-  for (std::int64_t frame = 0; frame < 3; ++frame) {
-    std::map<std::string, Item> inputs;
-    for (const GraphInput& input : graph->inputs)
-      inputs[input.name] = synthetic(input.type, {37, 29}, static_cast<std::uint32_t>(frame));
-    for (const auto& [name, item] : session.push(frame, inputs)) {
-      if (!item.image() || item.image()->type() == QUELL_TYPE_ID) continue;
-      const FloatImage image = item.image()->floats();
-      for (int c = 0; c < image.channels; ++c)
-        for (int y = 0; y < image.height; ++y)
-          for (int x = 0; x < image.width; ++x) ASSERT_TRUE(std::isfinite(image.at(x, y, c))) << name << " at " << x << ", " << y;
-    }
-  }
+  SyntheticFrames frames(*graph);
+  FiniteSink sink;
+  for (const FrameReport& report : Session(graph).run({0, 1, 2}, frames, sink)) EXPECT_TRUE(report.ok) << report.error;
 }
 
 // Every parameter, set or not.
