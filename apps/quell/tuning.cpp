@@ -52,7 +52,7 @@ void run(nlopt::algorithm algorithm, int evaluations, Objective& objective) {
 }  // namespace
 
 void find_least(const std::vector<double>& start, const SearchOptions& options,
-            const std::function<double(const std::vector<double>&)>& cost) {
+                const std::function<double(const std::vector<double>&)>& cost) {
   Objective objective{cost, start, std::numeric_limits<double>::infinity(), {}, nullptr};
   const int everywhere = options.looks_everywhere ? options.evaluations / 2 : 0;
   if (everywhere > 0) run(nlopt::GN_DIRECT_L, everywhere, objective);

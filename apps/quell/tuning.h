@@ -15,6 +15,6 @@ struct SearchOptions {
 /// figure but that near places have near figures; before it, when asked, by DIRECT-L (Gablonsky and Kelley 2001). The same for
 /// the same figures. Whoever gives `cost` keeps what was best. Ends early when `cost` throws; what it throws comes back.
 void find_least(const std::vector<double>& start, const SearchOptions& options,
-            const std::function<double(const std::vector<double>&)>& cost);
+                const std::function<double(const std::vector<double>&)>& cost);
 
 }  // namespace quell::app

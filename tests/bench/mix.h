@@ -44,13 +44,12 @@ constexpr Mix kJointBilateralMix = Mix{.load = 3} + kSub3 + kDot3 + kDotAdd3 +  
 
 /// A pixel of filter_row() of passes/spatial/atrous_kernel.cpp with the stops of SVGF, narrow normals, a variance, and the
 /// depth's gradient taken there. What gathers rows is left out, and so are exponents and weights that wait in memory.
-constexpr Mix kAtrousTap =
-    Mix{.fma = 1, .add = 1, .logic = 1, .load = 1} +                          // luminance
-    Mix{.fma = 1, .add = 1, .logic = 1, .load = 1} +                          // depth
-    kDotAdd3 + Mix{.fma = 3, .load = 3} +                                     // normal: cosine and logarithm
-    Mix{.fma = 4, .shift = 2} +                                               // exp2(), of AVX-512
-    Mix{.fma = 3, .add = 1, .load = 3} + Mix{.fma = 1, .mul = 1, .load = 1};  // sums; that of the variance
-constexpr Mix kAtrousPair{.fma = 4, .mul = 1, .estimate = 1, .logic = 1};     // two taps share the gain of depths
+constexpr Mix kAtrousTap = Mix{.fma = 1, .add = 1, .logic = 1, .load = 1} +  // luminance
+                           Mix{.fma = 1, .add = 1, .logic = 1, .load = 1} +  // depth
+                           kDotAdd3 + Mix{.fma = 3, .load = 3} +             // normal: cosine and logarithm
+                           Mix{.fma = 4, .shift = 2} +                       // exp2(), of AVX-512
+                           Mix{.fma = 3, .add = 1, .load = 3} + Mix{.fma = 1, .mul = 1, .load = 1};  // sums; that of the variance
+constexpr Mix kAtrousPair{.fma = 4, .mul = 1, .estimate = 1, .logic = 1};  // two taps share the gain of depths
 constexpr Mix kAtrousSlope{.add = 2, .logic = 13, .load = 3};
 constexpr Mix kAtrousGain{.fma = 3, .add = 3, .mul = 2, .min_max = 3, .divide = 1, .root = 1, .load = 6};  // with the blur
 constexpr Mix kAtrousMix = kAtrousTap * 24 + kAtrousPair * 12 + kAtrousSlope * 2 + kAtrousGain +
