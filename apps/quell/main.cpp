@@ -9,15 +9,10 @@
 #include "arguments.h"
 #include "command_line.h"
 #include "commands.h"
-#include "quell/sdk/abi.h"
+#include "machine.h"
 
 namespace quell::app {
 namespace {
-
-std::string version_text() {
-  return std::string("quell ") + QUELL_VERSION + " (plugin interface " + std::to_string(QUELL_ABI_MAJOR) + "." +
-         std::to_string(QUELL_ABI_MINOR) + ")";
-}
 
 void describe_program(CLI::App& program) {
   program.description("quell denoises path-traced image sequences: a graph of passes, written in JSON, runs over the frames.");
@@ -38,7 +33,7 @@ ExitCode run_program(int argc, char** argv, Console& console) {
   describe_program(program);
   const std::vector<Command> commands = {add_run(program),     add_check(program), add_inspect(program),
                                          add_compare(program), add_graph(program), add_passes(program),
-                                         add_schema(program),  add_tune(program),  add_new(program)};
+                                         add_schema(program),  add_tune(program),  add_report(program), add_new(program)};
   for (const Command& command : commands) command.options->get_option("--help")->group(kOtherGroup);
   try {
     program.parse(argc, argv);

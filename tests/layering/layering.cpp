@@ -35,7 +35,7 @@ const std::map<std::string, Names, std::less<>> kThirdParty = {
     {"spdlog", {"apps"}},         {"CLI", {"apps"}},
     {"xxhash.h", {"core/graph"}}, {"gtest", {"core/testing"}},
     {"gmock", {"core/testing"}},  {"xmmintrin.h", {"core/runtime"}},
-    {"nlopt.hpp", {"apps"}},
+    {"nlopt.hpp", {"apps"}},      {"zlib.h", {"apps"}},
 };
 
 // The operating system's headers. The SDK and the passes do without.

@@ -1,0 +1,70 @@
+// What a report shows of a run: its images, collected while frames are written.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "image_series.h"
+#include "quell/metrics/display.h"
+#include "report_pixels.h"
+
+namespace quell::app {
+
+/// A series of images of one name.
+struct ReportImage {
+  enum class Kind {
+    noisy,      ///< the sequence's color
+    reference,  ///< what results should look like
+    result,     ///< an output of a graph
+    input,      ///< another input of the sequence
+    inner,      ///< what a node yields
+  };
+  std::string name;  ///< of an inner image "node.port"
+  Kind kind = Kind::result;
+  int graph = -1;  ///< of results and inner images
+  PortType type = QUELL_TYPE_COLOR;
+  std::map<std::int64_t, int> frames;  ///< numbers of PackedImages
+  std::map<std::int64_t, int> flip;    ///< of maps of errors against the reference
+};
+
+struct ReportFrames {
+  std::vector<std::int64_t> all;   ///< that are computed
+  std::set<std::int64_t> kept;     ///< whose images are shown
+  std::set<std::int64_t> inner;    ///< of these, whose inner images are shown, too
+};
+
+/// Keeps the images of outputs and dumps of one graph, and maps of errors of its color outputs. Thread-safe.
+class ReportSink final : public FrameSink {
+ public:
+  struct Reference {
+    const ImageSeries* series = nullptr;  ///< null: no maps
+    DisplayTransform display = DisplayTransform::reinhard;
+    bool is_for_all = false;  ///< one image for every frame
+  };
+  /// `results` are names of outputs. What is given must outlive the sink.
+  ReportSink(const ReportFrames& frames, std::set<std::string, std::less<>> results, Reference reference, PackedImages& packed);
+
+  void write(std::string_view output, std::int64_t frame, const Item& item) override;
+  bool uses_processor() const override { return true; }
+
+  /// What a frame left that failed.
+  void forget(std::int64_t frame);
+  /// By the name that the sink was told. Not while one is written.
+  const std::map<std::string, ReportImage, std::less<>>& images() const { return images_; }
+
+ private:
+  int make_map(std::int64_t frame, const Image& image);
+  const ReportFrames& frames_;
+  const std::set<std::string, std::less<>> results_;
+  const Reference reference_;
+  PackedImages& packed_;
+  BufferPool pool_;
+  std::mutex mutex_;
+  std::map<std::string, ReportImage, std::less<>> images_;
+};
+
+}  // namespace quell::app

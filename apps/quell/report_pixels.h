@@ -1,0 +1,44 @@
+// Images as the report's page carries them: half floats where these hold the values, deflated, in text.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "quell/image/image.h"
+
+namespace quell::app {
+
+/// The nearest half float, ties to even; beyond the largest one infinity, NaN stays NaN.
+std::uint16_t to_half(float value);
+
+/// The lower and higher bytes of a value stand in planes of their own, lowest first, each with the pixels of all channels, row by
+/// row; these bytes are deflated (zlib's format, which a browser's DecompressionStream reads) and written in Base64.
+struct PackedImage {
+  Size size;
+  int channels = 0;
+  std::string format;  ///< "f16"; "f32" where a value is beyond half floats; "u32" for ids; "u8" for maps of 0..1 times 255
+  std::string text;
+};
+
+PackedImage pack(const Image& image);
+/// Of a map of errors within 0..1, with 8 bits.
+PackedImage pack_map(const Image& map);
+
+/// All images of a report, by number. Thread-safe.
+class PackedImages {
+ public:
+  int add(PackedImage image);
+  /// Bytes of text so far.
+  std::size_t bytes() const;
+  /// Not while one is added.
+  const std::vector<PackedImage>& all() const { return images_; }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<PackedImage> images_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace quell::app

@@ -1,0 +1,142 @@
+#include "report_run.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "graphviz.h"
+#include "interrupt.h"
+#include "quell/graph/plan_dot.h"
+#include "quell/runtime/sanitize.h"
+#include "quell/text/error.h"
+
+namespace quell::app {
+namespace {
+
+constexpr const char* kNoisy = "color";  // the input that graphs denoise
+
+std::set<std::string, std::less<>> names_of_results(const Plan& plan) {
+  std::set<std::string, std::less<>> names;
+  for (const int output : plan.outputs) names.insert(plan.graph->outputs[static_cast<std::size_t>(output)].name);
+  return names;
+}
+
+ReportSink::Reference reference_of(const std::optional<MeasuringOptions>& measuring) {
+  if (!measuring) return {};
+  return {&measuring->reference, measuring->compare.display, measuring->reference.is_single() && measuring->frames.size() == 1};
+}
+
+/// Inputs that are read by some graph, each from the first graph that reads it.
+std::map<std::string, const ReportedGraph*> find_inputs(const std::vector<ReportedGraph>& graphs) {
+  std::map<std::string, const ReportedGraph*> inputs;
+  for (const ReportedGraph& graph : graphs)
+    for (const InputFiles& input : graph.job.inputs) inputs.emplace(input.input, &graph);
+  return inputs;
+}
+
+/// As the graph reads it: without NaN and infinity.
+Item read_input(const ReportedGraph& graph, const std::string& input, std::int64_t frame, Executor& executor, BufferPool& pool) {
+  Item item = graph.job.sequence->read(input, frame, pool);
+  sanitize(item, executor, pool);
+  return item;
+}
+
+}  // namespace
+
+std::vector<std::string> list_inner_images(const Plan& plan) {
+  std::vector<std::string> names;
+  const std::vector<PlannedResult> results = plan.results();
+  for (const PlannedNode& planned : plan.nodes)
+    for (std::size_t port = 0; port < planned.outputs.size(); ++port)
+      for (std::size_t item = 0; item < planned.outputs[port].size(); ++item) {
+        const Shape& shape = planned.outputs[port][item];
+        const Endpoint endpoint{planned.node, static_cast<int>(port), static_cast<int>(item)};
+        const bool is_result = std::ranges::any_of(results, [&](const PlannedResult& result) { return result.from == endpoint; });
+        if (shape.present && is_image(shape.type) && !is_result) names.push_back(plan.graph->describe(endpoint));
+      }
+  return names;
+}
+
+void run_for_report(ReportedGraph& graph, const ReportFrames& frames, const std::optional<MeasuringOptions>& measuring,
+                    const SessionOptions& session, PackedImages& packed) {
+  ReportSink sink(frames, names_of_results(graph.job.plan), reference_of(measuring), packed);
+  std::optional<MeasuringSink> measure;
+  if (measuring) measure.emplace(sink, *measuring);
+  SessionOptions options = session;
+  options.schedule = Schedule::serial;
+  options.cancelled = interrupted;
+  if (!frames.inner.empty()) options.dumps = graph.inner;
+  options.on_frame = [&](const FrameReport& report) {
+    if (!report.ok) {
+      spdlog::warn("{}: frame {} failed: {}", graph.label, report.frame, report.error);
+      sink.forget(report.frame);
+      if (measure) measure->forget(report.frame);
+    } else if (measure) {
+      graph.measured[report.frame] = measure->take(report.frame);
+    }
+  };
+  const auto start = std::chrono::steady_clock::now();
+  graph.frames = Session(graph.job.graph, options)
+                     .run(frames.all, *graph.job.sequence, measure ? static_cast<FrameSink&>(*measure) : sink);
+  graph.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (interrupted()) throw Interrupted{};
+  graph.images = sink.images();
+  if (measure) graph.totals = measure->totals();
+}
+
+void draw_for_report(ReportedGraph& graph) {
+  try {
+    graph.drawing = draw_svg(to_dot(graph.job.plan));
+  } catch (const Error& error) {
+    graph.no_drawing = error.what();
+    spdlog::warn("{}: the report will have no drawing of the graph: {}", graph.label, error.what());
+  }
+}
+
+ReportedInputs read_inputs(const std::vector<ReportedGraph>& graphs, const ReportFrames& frames,
+                           const std::optional<MeasuringOptions>& measuring, PackedImages& packed) {
+  ReportedInputs read;
+  BufferPool pool;
+  Executor executor;
+  const std::map<std::string, const ReportedGraph*> inputs = find_inputs(graphs);
+  if (const auto noisy = inputs.find(kNoisy); noisy != inputs.end()) {
+    ReportSink sink(frames, {kNoisy}, reference_of(measuring), packed);
+    std::optional<MeasuringSink> measure;
+    if (measuring) {
+      MeasuringOptions options = *measuring;
+      options.outputs = {kNoisy};
+      measure.emplace(sink, std::move(options));
+    }
+    FrameSink& to = measure ? static_cast<FrameSink&>(*measure) : sink;
+    for (const std::int64_t frame : frames.all) {
+      if (interrupted()) throw Interrupted{};
+      to.write(kNoisy, frame, read_input(*noisy->second, kNoisy, frame, executor, pool));
+      if (measure) read.measured[frame] = measure->take(frame);
+    }
+    for (ReportImage image : {sink.images().at(kNoisy)}) {
+      image.kind = ReportImage::Kind::noisy;
+      read.images.push_back(std::move(image));
+    }
+    if (measure) read.totals = measure->totals();
+  }
+  if (measuring) {
+    ReportImage reference{"reference", ReportImage::Kind::reference, -1, QUELL_TYPE_COLOR, {}, {}};
+    for (const std::int64_t frame : frames.kept)
+      if (measuring->has_reference(frame))
+        reference.frames[frame] = packed.add(pack(measuring->reference.read(frame, pool)));
+    read.images.push_back(std::move(reference));
+  }
+  for (const auto& [name, graph] : inputs) {
+    ReportImage image{name, ReportImage::Kind::input, -1, QUELL_TYPE_COLOR, {}, {}};
+    if (name == kNoisy) continue;
+    for (const std::int64_t frame : frames.inner) {
+      const Item item = read_input(*graph, name, frame, executor, pool);
+      if (!item.image()) continue;
+      image.type = item.image()->type();
+      image.frames[frame] = packed.add(pack(*item.image()));
+    }
+    if (!image.frames.empty()) read.images.push_back(std::move(image));
+  }
+  return read;
+}
+
+}  // namespace quell::app

@@ -1,0 +1,12 @@
+# Tells the SHA-256 of everything that page.html is made from: cmake -P sources.cmake
+set(names index.html package.json package-lock.json stamp.mjs tsconfig.json vite.config.ts)
+file(GLOB sources RELATIVE ${CMAKE_CURRENT_LIST_DIR} ${CMAKE_CURRENT_LIST_DIR}/src/*)
+list(APPEND names ${sources})
+list(SORT names)
+set(all "")
+foreach(name IN LISTS names)
+  file(SHA256 ${CMAKE_CURRENT_LIST_DIR}/${name} one)
+  string(APPEND all "${name} ${one}\n")
+endforeach()
+string(SHA256 stamp "${all}")
+message(STATUS "${stamp}")

@@ -1,0 +1,51 @@
+import "./style.css";
+import { readReport, type Report } from "./data";
+import { showDrawings } from "./drawing";
+import { Pictures } from "./pictures";
+import { showPlots, showTimes } from "./plots";
+import { showProvenance } from "./provenance";
+import { firstState, Store } from "./state";
+import { Story } from "./story";
+import { showFigures } from "./table";
+import { find } from "./text";
+import { Viewer } from "./viewer";
+
+function describe(report: Report): string {
+  const image = report.packed[0];
+  const frames = report.frames.length === 1 ? `frame ${report.frames[0]}` : `${report.frames.length} frames, ${report.frames[0]}–${report.frames.at(-1)}`;
+  const kept = report.kept.length < report.frames.length ? `; images of ${report.kept.length} of them` : "";
+  return `${report.sequence}: ${frames}${kept}${image ? `, ${image.width} × ${image.height} pixels` : ""}. Made by ${report.provenance.version}, ${report.provenance.made}.`;
+}
+
+function tellFailures(report: Report) {
+  const failures = report.graphs.flatMap((graph) => graph.failed.map((text) => `${graph.label}: ${text}`));
+  if (failures.length === 0) return;
+  find("trouble").hidden = false;
+  find("trouble").textContent = failures.join("; ");
+}
+
+function start() {
+  const report = readReport();
+  find("title").textContent = report.title;
+  find("about").textContent = describe(report);
+  tellFailures(report);
+  const store = new Store(report, firstState(report));
+  const pictures = new Pictures(report);
+  const viewer = new Viewer(store, pictures);
+  new Story(store, pictures);
+  showFigures(report);
+  showPlots(report);
+  showTimes(report);
+  showDrawings(report);
+  showProvenance(report);
+  // For tests: when everything that was asked for is drawn.
+  (window as unknown as { reportReady: () => Promise<void> }).reportReady = () => viewer.ready();
+}
+
+try {
+  start();
+} catch (error) {
+  find("trouble").hidden = false;
+  find("trouble").textContent = `This report cannot be shown: ${error instanceof Error ? error.message : String(error)}`;
+  throw error;
+}

@@ -1,0 +1,50 @@
+// What the viewer shows, and who wants to know when that changes.
+import type { Report } from "./data";
+
+export type Mode = "wipe" | "side" | "left" | "difference" | "flip";
+
+export interface State {
+  left: number; // of Report.images
+  right: number;
+  mode: Mode;
+  frame: number;
+  exposure: number; // stops
+  wipe: number; // 0..1 of the picture's width
+  pixel: [number, number] | null; // that was chosen
+}
+
+export class Store {
+  private readonly told: ((state: State, before: State) => void)[] = [];
+  constructor(
+    readonly report: Report,
+    public state: State,
+  ) {}
+  listen(listener: (state: State, before: State) => void) {
+    this.told.push(listener);
+  }
+  set(change: Partial<State>) {
+    const before = this.state;
+    this.state = { ...before, ...change };
+    for (const listener of this.told) listener(this.state, before);
+  }
+}
+
+/** Images by number keys: what is compared most. */
+export function numbered(report: Report): number[] {
+  const order = ["noisy", "reference", "result"];
+  return report.images
+    .map((image, index) => ({ index, place: order.indexOf(image.kind) }))
+    .filter(({ place }) => place >= 0)
+    .sort((a, b) => a.place - b.place || a.index - b.index)
+    .map(({ index }) => index)
+    .slice(0, 9);
+}
+
+export function firstState(report: Report): State {
+  const of = (kind: string) => report.images.findIndex((image) => image.kind === kind);
+  const results = report.images.flatMap((image, index) => (image.kind === "result" ? [index] : []));
+  const right = results.at(-1) ?? 0;
+  const left = of("noisy") >= 0 ? of("noisy") : of("reference") >= 0 ? of("reference") : (results[0] ?? 0);
+  const frame = report.inner.at(-1) ?? report.kept.at(-1) ?? 0;
+  return { left, right, mode: "wipe", frame, exposure: 0, wipe: 0.5, pixel: null };
+}

@@ -1,0 +1,136 @@
+// What became of a pixel, pass by pass.
+import { type Graph, type ImageSeries, type NodeOutput, title } from "./data";
+import type { Pictures } from "./pictures";
+import type { Pixels } from "./pixels";
+import { displayCurve } from "./shade";
+import type { Store } from "./state";
+import { find, make, valueText } from "./text";
+
+interface Value {
+  image: ImageSeries;
+  values: number[];
+}
+
+export class Story {
+  private graph = 0;
+  private turn = 0;
+  constructor(
+    private readonly store: Store,
+    private readonly pictures: Pictures,
+  ) {
+    store.listen((state, before) => {
+      const graph = [state.left, state.right].map((index) => store.report.images[index]?.graph);
+      if (state.left !== before.left && graph[0] !== undefined) this.graph = graph[0];
+      else if (state.right !== before.right && graph[1] !== undefined) this.graph = graph[1];
+      if (state.pixel !== before.pixel || state.frame !== before.frame || state.left !== before.left || state.right !== before.right)
+        void this.show();
+    });
+    this.graph = store.report.images[store.state.right]?.graph ?? 0;
+    void this.show();
+  }
+
+  private get frame() {
+    const { inner } = this.store.report;
+    const { frame } = this.store.state;
+    return inner.includes(frame) ? frame : inner.at(-1);
+  }
+
+  private async value(image: ImageSeries | undefined, frame: number): Promise<Value | null> {
+    const number = image?.frames[frame];
+    const pixel = this.store.state.pixel;
+    if (!image || number === undefined || !pixel) return null;
+    const pixels = await this.pictures.store.get(number);
+    const [x, y] = this.place(pixel, pixels);
+    return { image, values: pixels.all(x, y) };
+  }
+  /** The same place in an image of another size. */
+  private place([x, y]: [number, number], pixels: Pixels): [number, number] {
+    const shown = this.store.report.images[this.store.state.left]!;
+    const number = Object.values(shown.frames)[0];
+    const full = number === undefined ? pixels.about : this.store.report.packed[number]!;
+    const scale = (at: number, size: number, of: number) => Math.min(size - 1, Math.floor((at * size) / of));
+    return [scale(x, pixels.width, full.width), scale(y, pixels.height, full.height)];
+  }
+
+  async show() {
+    const turn = ++this.turn;
+    const { report, state } = this.store;
+    const body = find("story-body");
+    const graph = report.graphs[this.graph];
+    const frame = this.frame;
+    if (!graph) return;
+    if (frame === undefined) {
+      body.replaceChildren(make("p", {}, "This report has no inner images; quell report keeps those of one frame without --inner none."));
+      return;
+    }
+    if (!state.pixel) {
+      body.replaceChildren(make("p", {}, "Click a pixel of the picture above, or choose one with the arrow keys, to see what each pass made of it."));
+      return;
+    }
+    const rows = await this.rows(graph, frame);
+    if (turn !== this.turn) return;
+    const head = make("tr", {}, ...["Pass", "Yields", "Value", ""].map((text) => make("th", { scope: "col" }, text)));
+    const table = make("table", { class: "story" }, make("thead", {}, head), make("tbody", {}, ...rows));
+    body.replaceChildren(this.choice(frame), make("div", { class: "scroll" }, table));
+  }
+
+  private choice(frame: number): HTMLElement {
+    const { report, state } = this.store;
+    const select = make("select", { id: "story-graph" });
+    report.graphs.forEach((graph, index) => select.append(make("option", { value: String(index) }, graph.label)));
+    select.value = String(this.graph);
+    select.addEventListener("change", () => {
+      this.graph = Number(select.value);
+      void this.show().then(() => find("story-graph").focus());
+    });
+    const [x, y] = state.pixel!;
+    const where = make("p", {}, `Pixel x ${x}, y ${y} of frame ${frame}, in `, make("label", { class: "hidden", for: "story-graph" }, "graph"), select);
+    if (frame !== state.frame) where.append(` (inner images are of ${report.inner.length > 1 ? "other frames" : "this frame alone"})`);
+    return where;
+  }
+
+  private async rows(graph: Graph, frame: number): Promise<HTMLElement[]> {
+    const { report } = this.store;
+    const rows: HTMLElement[] = [];
+    const add = (first: HTMLElement, port: string, value: Value | null, isLength: boolean) => {
+      if (value) rows.push(make("tr", isLength ? { class: "length" } : {}, first, make("td", {}, port), ...this.cells(value)));
+    };
+    const used = new Set(graph.nodes.flatMap((node) => node.inputs.map((input) => input.from)));
+    for (const image of report.images)
+      if ((image.kind === "noisy" || image.kind === "input") && used.has(image.name))
+        add(make("th", { scope: "row" }, "input"), image.name, await this.value(image, frame), false);
+    for (const node of graph.nodes) {
+      let first = make("th", { scope: "row", title: node.doc || node.summary }, make("b", {}, node.name), " ", make("small", {}, node.pass));
+      for (const output of node.outputs) {
+        const value = await this.value(this.image(output), frame);
+        const isLength = output.type === "scalar" && /length/.test(output.port);
+        add(first, isLength ? `${output.port} (frames of history)` : this.portText(output), value, isLength);
+        if (value) first = make("th", { scope: "row" }, make("span", { class: "hidden" }, node.name));
+      }
+    }
+    const reference = report.images.find((image) => image.kind === "reference");
+    add(make("th", { scope: "row" }, "reference"), "", await this.value(reference, frame), false);
+    return rows;
+  }
+  private portText(output: NodeOutput): string {
+    return output.result ? `${output.port} → output ${output.result}` : output.port;
+  }
+  private image(output: NodeOutput): ImageSeries | undefined {
+    const name = output.result ?? output.name;
+    const kind = output.result ? "result" : "inner";
+    return this.store.report.images.find((image) => image.graph === this.graph && image.kind === kind && image.name === name);
+  }
+
+  private cells({ image, values }: Value): HTMLElement[] {
+    const numbers = make("td", { class: "number" }, make("code", {}, values.map(valueText).join("  ")));
+    const mark = make("td");
+    if (values.length === 3 && (image.type === "color" || image.type === "albedo")) {
+      const curve = displayCurve(image.type === "color" ? (this.store.report.display ?? "reinhard") : "srgb", image.type === "color" ? this.store.state.exposure : 0);
+      const [r, g, b] = values.map((value) => Math.round(255 * (curve(value) || 0)));
+      const swatch = make("span", { class: "swatch", title: title(this.store.report, image) });
+      swatch.style.background = `rgb(${r} ${g} ${b})`;
+      mark.append(swatch);
+    }
+    return [numbers, mark];
+  }
+}
