@@ -39,9 +39,13 @@ function addTimes(svg: SVGSVGElement, graph: Graph) {
 export function showDrawings(report: Report) {
   for (const graph of report.graphs) {
     const place = make("div", { class: "scroll drawing", tabindex: "0", role: "region", "aria-label": `drawing of ${graph.label}` });
-    find("drawings-body").append(make("h3", {}, graph.label), ...(graph.doc ? [make("p", {}, graph.doc)] : []), place);
+    const fit = make("button", { type: "button", "aria-pressed": "false" }, "Fit to the width");
+    fit.addEventListener("click", () => fit.setAttribute("aria-pressed", String(place.classList.toggle("fit"))));
+    const head = make("div", { class: "row" }, make("h3", {}, graph.label), fit);
+    find("drawings-body").append(head, ...(graph.doc ? [make("p", {}, graph.doc)] : []), place);
     const svg = graph.drawing ? readSvg(graph.drawing) : null;
     if (!svg) {
+      fit.hidden = true;
       const nodes = graph.nodes.map((node) => make("li", {}, `${node.name} (${node.pass}): ${millisecondsText(median(node.seconds))}`));
       place.append(make("p", {}, `There is no drawing: ${graph.noDrawing ?? "it cannot be read"}`), make("ol", {}, ...nodes));
       continue;

@@ -32,14 +32,17 @@ function start() {
   const store = new Store(report, firstState(report));
   const pictures = new Pictures(report);
   const viewer = new Viewer(store, pictures);
-  new Story(store, pictures);
+  const story = new Story(store, pictures);
   showFigures(report);
   showPlots(report);
   showTimes(report);
   showDrawings(report);
   showProvenance(report);
   // For tests: when everything that was asked for is drawn.
-  (window as unknown as { reportReady: () => Promise<void> }).reportReady = () => viewer.ready();
+  (window as unknown as { reportReady: () => Promise<void> }).reportReady = async () => {
+    await story.ready();
+    await viewer.ready();
+  };
 }
 
 try {

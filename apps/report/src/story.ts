@@ -1,5 +1,5 @@
 // What became of a pixel, pass by pass.
-import { type Graph, type ImageSeries, type NodeOutput, title } from "./data";
+import { type Graph, type GraphNode, type ImageSeries, type NodeOutput, title } from "./data";
 import type { Pictures } from "./pictures";
 import type { Pixels } from "./pixels";
 import { displayCurve } from "./shade";
@@ -52,7 +52,18 @@ export class Story {
     return [scale(x, pixels.width, full.width), scale(y, pixels.height, full.height)];
   }
 
-  async show() {
+  private showing: Promise<void> = Promise.resolve();
+  /** When what was asked for last is shown. */
+  async ready(): Promise<void> {
+    for (let last; last !== this.showing; ) {
+      last = this.showing;
+      await last;
+    }
+  }
+  private show(): Promise<void> {
+    return (this.showing = this.showNow());
+  }
+  private async showNow() {
     const turn = ++this.turn;
     const { report, state } = this.store;
     const body = find("story-body");
@@ -91,26 +102,28 @@ export class Story {
 
   private async rows(graph: Graph, frame: number): Promise<HTMLElement[]> {
     const { report } = this.store;
-    const rows: HTMLElement[] = [];
-    const add = (first: HTMLElement, port: string, value: Value | null, isLength: boolean) => {
-      if (value) rows.push(make("tr", isLength ? { class: "length" } : {}, first, make("td", {}, port), ...this.cells(value)));
-    };
     const used = new Set(graph.nodes.flatMap((node) => node.inputs.map((input) => input.from)));
-    for (const image of report.images)
-      if ((image.kind === "noisy" || image.kind === "input") && used.has(image.name))
-        add(make("th", { scope: "row" }, "input"), image.name, await this.value(image, frame), false);
-    for (const node of graph.nodes) {
-      let first = make("th", { scope: "row", title: node.doc || node.summary }, make("b", {}, node.name), " ", make("small", {}, node.pass));
+    const inputs = report.images.filter((image) => (image.kind === "noisy" || image.kind === "input") && used.has(image.name));
+    const entries: { first: HTMLElement; port: string; image: ImageSeries | undefined; isLength?: boolean; node?: GraphNode }[] = [];
+    for (const image of inputs) entries.push({ first: make("th", { scope: "row" }, "input"), port: image.name, image });
+    for (const node of graph.nodes)
       for (const output of node.outputs) {
-        const value = await this.value(this.image(output), frame);
         const isLength = output.type === "scalar" && /length/.test(output.port);
-        add(first, isLength ? `${output.port} (frames of history)` : this.portText(output), value, isLength);
-        if (value) first = make("th", { scope: "row" }, make("span", { class: "hidden" }, node.name));
+        const first = make("th", { scope: "row", title: node.doc || node.summary });
+        first.append(make("b", {}, node.name), " ", make("small", {}, node.pass));
+        entries.push({ first, port: isLength ? `${output.port} (frames of history)` : this.portText(output), image: this.image(output), isLength, node });
       }
-    }
     const reference = report.images.find((image) => image.kind === "reference");
-    add(make("th", { scope: "row" }, "reference"), "", await this.value(reference, frame), false);
-    return rows;
+    entries.push({ first: make("th", { scope: "row" }, "reference"), port: "", image: reference });
+    const values = await Promise.all(entries.map(({ image }) => this.value(image, frame)));
+    let last: GraphNode | undefined;
+    return entries.flatMap(({ first, port, isLength, node }, index) => {
+      const value = values[index];
+      if (!value) return [];
+      if (node && node === last) first.classList.add("again");
+      last = node;
+      return [make("tr", isLength ? { class: "length" } : {}, first, make("td", {}, port), ...this.cells(value))];
+    });
   }
   private portText(output: NodeOutput): string {
     return output.result ? `${output.port} → output ${output.result}` : output.port;

@@ -85,6 +85,9 @@ export function showFigures(report: Report) {
     fill();
   };
   fill();
-  const caption = make("caption", {}, report.metrics ? `Over all frames, against ${report.reference ?? "the reference"}, as the display transform '${report.display}' shows them. The best is bold; choose a column's head to sort.` : "There is no reference, and so there are no figures of errors.");
-  find("figures-body").append(make("div", { class: "scroll" }, make("table", {}, caption, make("thead", {}, make("tr", {}, ...heads)), body)));
+  const about = report.metrics
+    ? `Over all frames, against ${report.reference ?? "the reference"}, as the display transform '${report.display}' shows them. The best is bold; choose a column's head to sort.`
+    : "There is no reference, and so there are no figures of errors.";
+  const table = make("table", { "aria-describedby": "figures-about" }, make("thead", {}, make("tr", {}, ...heads)), body);
+  find("figures-body").append(make("div", { class: "scroll" }, table), make("p", { id: "figures-about", class: "quiet" }, about));
 }

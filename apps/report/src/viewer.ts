@@ -368,7 +368,7 @@ export class Viewer {
     if (!picture || !stage.clientWidth) return;
     const { width, height } = picture.canvas;
     const paneWidth = stage.clientWidth / this.panes;
-    const most = Math.max(240, window.innerHeight * 0.72);
+    const most = Math.max(240, window.innerHeight * 0.62);
     const cssHeight = Math.min(most, (paneWidth * height) / width);
     const ratio = window.devicePixelRatio || 1;
     const size = { width: Math.round(stage.clientWidth * ratio), height: Math.round(cssHeight * ratio) };
@@ -404,7 +404,7 @@ export class Viewer {
     }
     if (pixel) for (let pane = 0; pane < this.panes; ++pane) this.markPixel(pixel, pane * view.paneWidth);
     find("zoom-text").textContent = `${Math.round(view.zoom * ratio * 100)} %`;
-    this.canvas.style.touchAction = view.isFit && mode !== "wipe" ? "pan-y" : "none";
+    this.canvas.style.touchAction = view.isFit ? "pan-y" : "none";
   }
   /** The part between two places of the pane that begins at `at`. */
   private drawPicture(picture: Picture | null, at: number, from: number, to: number) {
