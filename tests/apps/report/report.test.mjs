@@ -1,0 +1,323 @@
+// quell report, as a person meets it: made by the program, opened in headless Chromium from disk.
+//   node report.test.mjs QUELL SOURCE_DIR
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { cpSync, existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { readExr } from "./exr.mjs";
+
+const [quell, source] = process.argv.slice(2);
+const browserFile = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
+const skip = (why) => {
+  console.log(`skipped: ${why}`);
+  process.exit(77);
+};
+if (!browserFile) skip("there is no chromium");
+const { chromium } = await import("playwright-core").catch(() => skip("playwright-core is not installed: npm ci in tests/apps/report"));
+
+const kFlags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"];
+const kFrames = "1-3";
+const folder = mkdtempSync(join(tmpdir(), "quell-report-"));
+const sample = join(source, "graphs/sample");
+const run = (...words) => execFileSync(quell, [...words, "-q"], { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+let browser;
+
+before(async () => {
+  run("report", sample, "games202", "svgf", "--frames", kFrames, "-o", "report.html");
+  run("run", "svgf", sample, "--frames", kFrames, "-o", "svgf", "--compression", "none", "--type", "half");
+  browser = await chromium.launch({ executablePath: browserFile, args: [...kFlags, "--disable-component-update", "--disable-sync"] });
+});
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true });
+});
+
+/** A page whose complaints and requests are told at the end. */
+async function open(file = "report.html", options = {}) {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 900 }, ...options });
+  const troubles = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && troubles.push(message.text()));
+  page.on("pageerror", (error) => troubles.push(error.message));
+  page.on("request", (request) => /^(file|data|blob):/.test(request.url()) || troubles.push(`asks for ${request.url()}`));
+  await page.goto(pathToFileURL(join(folder, file)).href);
+  await page.evaluate(() => window.reportReady());
+  const ready = () => page.evaluate(() => window.reportReady());
+  return {
+    page,
+    ready,
+    press: async (...keys) => {
+      for (const key of keys) await page.keyboard.press(key);
+      await ready();
+    },
+    /** The color of the canvas at a part of its width and height. */
+    color: (x, y) =>
+      page.evaluate(
+        ([u, v]) => {
+          const canvas = document.querySelector("canvas");
+          const context = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
+          context.drawImage(canvas, -Math.floor(u * canvas.width), -Math.floor(v * canvas.height));
+          return [...context.getImageData(0, 0, 1, 1).data].slice(0, 3);
+        },
+        [x, y],
+      ),
+    /** What the readout says of an image. */
+    values: async (name) => {
+      const text = await page.locator("#readout .values", { hasText: name }).locator("code").textContent();
+      return text.replaceAll("−", "-").split(/\s+/).map(Number);
+    },
+    picture: () => page.evaluate(() => document.querySelector("canvas").toDataURL()),
+    end: async () => {
+      await page.close();
+      assert.deepEqual(troubles, []);
+    },
+  };
+}
+
+async function choosePixel({ page, ready }, x, y) {
+  await page.focus("#canvas");
+  await page.keyboard.press("ArrowLeft"); // the middle of the picture: 160, 90
+  for (const [from, to, less, more] of [[160, x, "ArrowLeft", "ArrowRight"], [90, y, "ArrowUp", "ArrowDown"]]) {
+    const key = to < from ? less : more;
+    for (let i = 0; i < Math.floor(Math.abs(to - from) / 10); ++i) await page.keyboard.press(`Shift+${key}`);
+    for (let i = 0; i < Math.abs(to - from) % 10; ++i) await page.keyboard.press(key);
+  }
+  await ready();
+}
+
+test("opens from disk without a word on the console and without a request", async () => {
+  const report = await open();
+  assert.equal(await report.page.title(), "games202, svgf on sample");
+  assert.equal(await report.page.locator("h1").textContent(), "games202, svgf on sample");
+  assert.notDeepEqual(await report.color(0.3, 0.5), await report.color(0.7, 0.5));
+  await report.end();
+});
+
+test("values read out are those of the EXR file, in every frame", async () => {
+  const report = await open();
+  await report.page.selectOption("#left", { label: "svgf" });
+  for (const [x, y] of [[172, 63], [0, 179]]) {
+    await choosePixel(report, x, y);
+    assert.match(await report.page.textContent("#readout"), new RegExp(`x ${x}, y ${y}`));
+    for (const frame of [3, 2, 1]) {
+      const image = readExr(join(folder, `svgf/color.000${frame}.exr`));
+      const want = ["R", "G", "B"].map((channel) => image(x, y, channel));
+      const got = await report.values("svgf");
+      got.forEach((value, i) => assert.ok(Math.abs(value - want[i]) <= 1e-4 * want[i], `frame ${frame}: ${got}, not ${want}`));
+      await report.press(",");
+    }
+    await report.press(".", ".", ".");
+    await report.page.reload();
+    await report.ready();
+    await report.page.selectOption("#left", { label: "svgf" });
+  }
+  await report.end();
+});
+
+test("number keys switch images, and letters how they are shown", async () => {
+  const report = await open();
+  const chosen = () => report.page.evaluate(() => ["left", "right"].map((id) => document.getElementById(id).selectedOptions[0].text));
+  assert.deepEqual(await chosen(), ["noisy (color)", "svgf"]);
+  await report.press("2");
+  assert.deepEqual(await chosen(), ["reference", "svgf"]);
+  await report.press("Shift+Digit3");
+  assert.deepEqual(await chosen(), ["reference", "games202"]);
+  await report.press("x");
+  assert.deepEqual(await chosen(), ["games202", "reference"]);
+  const pictures = new Set();
+  for (const [key, mode] of [["w", "wipe"], ["s", "side"], ["l", "left"], ["d", "difference"], ["f", "flip"]]) {
+    await report.press(key);
+    assert.equal(await report.page.locator("#modes input:checked").getAttribute("value"), mode);
+    pictures.add(await report.picture());
+  }
+  assert.equal(pictures.size, 5);
+  await report.end();
+});
+
+test("the wipe shows one image on its left and the other on its right", async () => {
+  const report = await open();
+  const wipe = (percent) => report.page.locator("#wipe").fill(String(percent)).then(report.ready);
+  await report.press("l");
+  const left = await report.color(0.4, 0.3);
+  await report.press("x");
+  const right = await report.color(0.4, 0.3);
+  assert.notDeepEqual(left, right);
+  await report.press("x", "w");
+  await wipe(90);
+  assert.deepEqual(await report.color(0.4, 0.3), left);
+  await wipe(10);
+  assert.deepEqual(await report.color(0.4, 0.3), right);
+  const box = await report.page.locator("#canvas").boundingBox();
+  const line = await report.page.evaluate(() => Number(document.getElementById("wipe").value));
+  assert.equal(line, 10);
+  await wipe(50);
+  await report.page.mouse.move(box.x + box.width / 2, box.y + 50); // takes hold of the line
+  await report.page.mouse.down();
+  await report.page.mouse.move(box.x + box.width * 0.6, box.y + 60);
+  await report.page.mouse.up();
+  assert.ok(Number(await report.page.inputValue("#wipe")) > 55);
+  await report.end();
+});
+
+test("an image differs from itself nowhere, and an exposure makes it brighter", async () => {
+  const report = await open();
+  await report.press("3", "Shift+Digit3", "d");
+  assert.deepEqual(await report.color(0.5, 0.5), [0, 0, 0]);
+  await report.press("l");
+  const dark = await report.color(0.5, 0.5);
+  await report.press("]", "]");
+  const bright = await report.color(0.5, 0.5);
+  assert.ok(bright[0] > dark[0] + 20, `${bright} after ${dark}`);
+  assert.equal(await report.page.textContent("#exposure-text"), "+1");
+  await report.end();
+});
+
+test("zoom goes down to pixels, keeps its place and is the same for both images", async () => {
+  const report = await open();
+  await choosePixel(report, 160, 90);
+  await report.press("s", "+", "+", "+");
+  const zoomed = await report.page.textContent("#zoom-text");
+  const box = await report.page.locator("#canvas").boundingBox();
+  const under = async (u) => {
+    await report.page.mouse.move(box.x + box.width * u, box.y + box.height / 2);
+    await report.ready();
+    return (await report.page.textContent("#readout .place")).trim();
+  };
+  assert.equal(await under(0.26), await under(0.76)); // the same places of both panes
+  await report.page.mouse.wheel(0, -2000);
+  await report.ready();
+  assert.equal(await report.page.textContent("#zoom-text"), "9600 %");
+  assert.notEqual(zoomed, "9600 %");
+  const place = await under(0.76);
+  await report.page.mouse.down();
+  await report.page.mouse.move(box.x + box.width * 0.76 - 200, box.y + box.height / 2, { steps: 4 });
+  await report.page.mouse.up();
+  assert.notEqual(await under(0.76), place); // two pixels on
+  await report.press("0");
+  assert.notEqual(await report.page.textContent("#zoom-text"), "9600 %");
+  await report.end();
+});
+
+test("scrubbing and playing go through the frames", async () => {
+  const report = await open();
+  const frame = () => report.page.textContent("#frame-text");
+  assert.equal(await frame(), "3");
+  const third = await report.picture();
+  await report.page.locator("#frame").fill("0");
+  await report.ready();
+  assert.equal(await frame(), "1");
+  assert.notEqual(await report.picture(), third);
+  await report.page.click("#play");
+  await report.page.waitForFunction(() => document.getElementById("frame-text").textContent === "3");
+  await report.page.click("#play");
+  assert.equal(await report.page.textContent("#play"), "Play");
+  await report.end();
+});
+
+test("a pixel's story tells what each pass yields, and how long its history is", async () => {
+  const report = await open();
+  assert.match(await report.page.textContent("#story-body"), /Click a pixel/);
+  await choosePixel(report, 160, 90);
+  const rows = await report.page.locator("#story tbody tr").allTextContents();
+  for (const node of ["light", "reproject", "moments", "blend", "variance", "level0", "level4", "result"])
+    assert.ok(rows.some((row) => row.startsWith(node)), `no ${node} in ${rows}`);
+  const length = await report.page.locator("#story tr.length td.number").allTextContents();
+  assert.ok(length.map(Number).every((frames) => frames >= 1 && frames <= 3), `${length}`);
+  const result = await report.page.locator("#story tr", { hasText: "output color" }).locator("td.number").textContent();
+  assert.equal(result.trim(), (await report.page.locator("#readout .values", { hasText: "svgf" }).locator("code").textContent()).trim());
+  await report.page.selectOption("#story-graph", { label: "games202" });
+  await report.ready();
+  assert.ok((await report.page.locator("#story tbody tr").allTextContents()).some((row) => row.startsWith("filter")));
+  await report.end();
+});
+
+test("figures can be sorted, plots and drawings are complete", async () => {
+  const report = await open();
+  const { page } = report;
+  const names = () => page.locator("#figures tbody th").allTextContents();
+  assert.deepEqual(await names(), ["noisy (color)", "games202", "svgf"]);
+  await page.click("#figures thead button:has-text('psnr')");
+  await page.click("#figures thead button:has-text('psnr')");
+  assert.deepEqual(await names(), ["svgf", "games202", "noisy (color)"]);
+  assert.equal(await page.locator("#figures th[aria-sort=descending]").count(), 1);
+  assert.equal(await page.locator("#plots .plot svg").count(), 7); // psnr, ssim, relmse, smape, flip, tpsnr, warped
+  assert.equal(await page.locator("#plots .plot svg").first().locator("[aria-label=line] path").count(), 3);
+  const nodes = [4, 12]; // of games202 and svgf
+  for (const [i, count] of nodes.entries())
+    assert.equal(await page.locator("#times .plot svg").nth(i).locator("[aria-label=bar] rect").count(), count);
+  assert.equal(await page.locator("#times .plot").count(), 3);
+  for (const [i, count] of nodes.entries()) {
+    const drawing = page.locator("#drawings .drawing").nth(i);
+    if (await drawing.locator("svg").count()) assert.equal(await drawing.locator("text.time").count(), count);
+    else assert.match(await drawing.textContent(), /no drawing/);
+  }
+  assert.match(await page.textContent("#provenance pre"), /quell report .*graphs\/sample games202 svgf --frames 1-3 -o report.html/);
+  await report.end();
+});
+
+test("the keyboard alone reaches everything, and everything has a name", async () => {
+  const report = await open();
+  const { page } = report;
+  const seen = new Set();
+  for (let i = 0; i < 60; ++i) {
+    await page.keyboard.press("Tab");
+    seen.add(await page.evaluate(() => document.activeElement?.id ?? ""));
+  }
+  for (const id of ["left", "exchange", "right", "canvas", "play", "frame", "exposure", "wipe", "fit", "zoom-in", "zoom-out"])
+    assert.ok(seen.has(id), `Tab never comes to #${id}`);
+  const nameless = await page.evaluate(() =>
+    [...document.querySelectorAll("button, select, input, canvas")]
+      .filter((element) => !element.getAttribute("aria-label") && !element.textContent.trim() && !element.labels?.length)
+      .map((element) => element.outerHTML),
+  );
+  assert.deepEqual(nameless, []);
+  await page.focus("#modes input");
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await page.locator("#modes input:checked").getAttribute("value"), "side");
+  await report.end();
+});
+
+test("fits a phone, light and dark", async () => {
+  for (const [colorScheme, isDark] of [["light", false], ["dark", true]]) {
+    const report = await open("report.html", { viewport: { width: 360, height: 740 }, colorScheme, hasTouch: true });
+    const wide = await report.page.evaluate(() => [document.documentElement.scrollWidth, ...[...document.querySelectorAll("body *")]
+      .filter((element) => element.getBoundingClientRect().right > 361 && !element.closest(".scroll, pre, svg"))
+      .map((element) => element.outerHTML.slice(0, 99))]);
+    assert.deepEqual(wide, [360]);
+    const sum = await report.page.evaluate(() =>
+      getComputedStyle(document.body).backgroundColor.match(/\d+/g).slice(0, 3).reduce((a, b) => a + Number(b), 0),
+    );
+    assert.equal(sum < 384, isDark);
+    await report.end();
+  }
+});
+
+test("names and texts neither break the page nor run", async () => {
+  const evil = `"><script>window.ran=1</script><!-- ' & ü 漢 \\ `;
+  mkdirSync(join(folder, evil.replaceAll("/", "∕"))); // a folder's name has no slash
+  const shot = join(evil.replaceAll("/", "∕"), "shot");
+  mkdirSync(join(folder, shot));
+  for (const frame of ["0001", "0002"]) cpSync(join(sample, `color_1spp.${frame}.exr`), join(folder, shot, `color.${frame}.exr`));
+  const graph = {
+    quell: 1,
+    name: `</script>${evil}`,
+    doc: `</title></script>${evil}<img src=x onerror=window.ran=1>`,
+    inputs: { color: { type: "color", doc: evil } },
+    nodes: { twice: { pass: "gaussian", doc: `]]>${evil}`, in: { image: "color" } } },
+    outputs: { color: "twice.image" },
+  };
+  writeFileSync(join(folder, "evil.json"), JSON.stringify(graph));
+  run("report", shot, `<b onclick=window.ran=1>${evil.replaceAll("/", "∕").replaceAll("=", "≡")}=evil.json`.replace("onclick=window.ran=1", "x"), "-o", "evil.html");
+  const report = await open("evil.html");
+  await choosePixel(report, 160, 90);
+  await report.press("s");
+  assert.equal(await report.page.evaluate(() => window.ran), undefined);
+  assert.equal(await report.page.locator("main img, main script, main b[x]").count(), 0);
+  assert.match(await report.page.textContent("h1"), /^<b x>"><script>/);
+  assert.match(await report.page.textContent("#about"), /"><script>.* & ü 漢 \\/);
+  assert.match(await report.page.textContent("#drawings-body"), /<\/title><\/script>"><script>window\.ran=1<\/script>/);
+  assert.match(await report.page.textContent("#provenance-body"), /<\/script>/);
+  await report.end();
+});
