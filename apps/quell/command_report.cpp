@@ -101,7 +101,7 @@ ReportFrames choose_frames(const std::vector<ReportedGraph>& graphs, const Argum
 
 /// Bytes of the file, by what half floats of noise take. Smooth images take less.
 double estimate_bytes(const Report& report) {
-  constexpr double kBytesPerByte = 1.1;  // deflated, and in Base64
+  constexpr double kBytesPerByte = 0.95;  // deflated, and in Base64
   double bytes = 0;
   const auto add = [&](const Shape& shape, std::size_t frames, double bytes_per_value) {
     const double pixels = static_cast<double>(shape.size.width) * shape.size.height;
@@ -141,7 +141,10 @@ Report prepare(const Arguments& arguments) {
     one.options.params = arguments.params;
     ReportedGraph& reported = report.graphs.emplace_back();
     reported.label = graph.label;
-    reported.job = prepare_job(load(one, passes), arguments.sequence);
+    const std::shared_ptr<const Graph> loaded = load(one, passes);
+    if (report.graphs.size() > 1) set_verbosity(Verbosity::quiet);  // the sequence was described already
+    reported.job = prepare_job(loaded, arguments.sequence);
+    set_verbosity(arguments.verbosity.verbosity());
     reported.inner = list_inner_images(reported.job.plan);
   }
   report.frames = choose_frames(report.graphs, arguments);
@@ -157,7 +160,8 @@ Report prepare(const Arguments& arguments) {
 /// What each graph is measured by; its outputs are its own.
 std::vector<std::optional<MeasuringOptions>> prepare_measuring_of(Report& report, const Arguments& arguments) {
   ReferenceArguments reference{arguments.reference, arguments.metrics};
-  if (!reference.reference && has_input(*report.graphs.front().job.sequence, kReferenceName)) reference.reference = kReferenceName;
+  if (!reference.reference && has_input(*report.graphs.front().job.sequence, kReferenceName))
+    reference.reference = kReferenceName;
   std::vector<std::optional<MeasuringOptions>> measuring;
   for (const ReportedGraph& graph : report.graphs) {
     Job job = graph.job;

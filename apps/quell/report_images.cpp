@@ -1,6 +1,7 @@
 #include "report_images.h"
 
 #include "quell/metrics/comparison.h"
+#include "quell/text/error.h"
 
 namespace quell::app {
 
@@ -24,9 +25,12 @@ void ReportSink::write(std::string_view output, std::int64_t frame, const Item& 
   if (map >= 0) series.flip[frame] = map;
 }
 
-/// -1 when the images' sizes differ: the figures say so already.
+/// -1 when the reference cannot be read, or has another size: whoever measures says so.
 int ReportSink::make_map(std::int64_t frame, const Image& image) {
-  const Image reference = reference_.series->read(frame, pool_);
+  Image reference;
+  try {
+    reference = reference_.series->read(frame, pool_);
+  } catch (const Error&) { return -1; }
   if (reference.size() != image.size()) return -1;
   const CompareOptions options{.metrics = {Metric::flip}, .display = reference_.display};
   return packed_.add(pack_map(compare({{reference, image}}, options, true, pool_).flip_map));

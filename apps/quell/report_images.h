@@ -32,9 +32,9 @@ struct ReportImage {
 };
 
 struct ReportFrames {
-  std::vector<std::int64_t> all;   ///< that are computed
-  std::set<std::int64_t> kept;     ///< whose images are shown
-  std::set<std::int64_t> inner;    ///< of these, whose inner images are shown, too
+  std::vector<std::int64_t> all;  ///< that are computed
+  std::set<std::int64_t> kept;    ///< whose images are shown
+  std::set<std::int64_t> inner;   ///< of these, whose inner images are shown, too
 };
 
 /// Keeps the images of outputs and dumps of one graph, and maps of errors of its color outputs. Thread-safe.

@@ -33,11 +33,47 @@ std::map<std::string, const ReportedGraph*> find_inputs(const std::vector<Report
   return inputs;
 }
 
-/// As the graph reads it: without NaN and infinity.
+/// As the graph reads it: without NaN and infinity. Nothing where it cannot be read: the run has told why.
 Item read_input(const ReportedGraph& graph, const std::string& input, std::int64_t frame, Executor& executor, BufferPool& pool) {
-  Item item = graph.job.sequence->read(input, frame, pool);
-  sanitize(item, executor, pool);
-  return item;
+  try {
+    Item item = graph.job.sequence->read(input, frame, pool);
+    sanitize(item, executor, pool);
+    return item;
+  } catch (const Error&) { return {}; }
+}
+
+ReportImage read_reference(const ReportFrames& frames, const MeasuringOptions& measuring, BufferPool& pool,
+                           PackedImages& packed) {
+  ReportImage reference{"reference", ReportImage::Kind::reference, -1, QUELL_TYPE_COLOR, {}, {}};
+  for (const std::int64_t frame : frames.kept) try {
+      if (measuring.has_reference(frame)) reference.frames[frame] = packed.add(pack(measuring.reference.read(frame, pool)));
+    } catch (const Error& error) { spdlog::warn("frame {}: the report has no reference: {}", frame, error.what()); }
+  return reference;
+}
+
+void read_noisy(const ReportedGraph& graph, const ReportFrames& frames, const std::optional<MeasuringOptions>& measuring,
+                Executor& executor, PackedImages& packed, ReportedInputs& read) {
+  BufferPool pool;
+  ReportSink sink(frames, {kNoisy}, reference_of(measuring), packed);
+  std::optional<MeasuringSink> measure;
+  if (measuring) {
+    MeasuringOptions options = *measuring;
+    options.outputs = {kNoisy};
+    measure.emplace(sink, std::move(options));
+  }
+  FrameSink& to = measure ? static_cast<FrameSink&>(*measure) : sink;
+  for (const std::int64_t frame : frames.all) {
+    if (interrupted()) throw Interrupted{};
+    const Item item = read_input(graph, kNoisy, frame, executor, pool);
+    if (!item) continue;
+    to.write(kNoisy, frame, item);
+    if (measure) read.measured[frame] = measure->take(frame);
+  }
+  if (measure) read.totals = measure->totals();
+  const auto found = sink.images().find(kNoisy);
+  if (found == sink.images().end()) return;
+  read.images.push_back(found->second);
+  read.images.back().kind = ReportImage::Kind::noisy;
 }
 
 }  // namespace
@@ -75,8 +111,8 @@ void run_for_report(ReportedGraph& graph, const ReportFrames& frames, const std:
     }
   };
   const auto start = std::chrono::steady_clock::now();
-  graph.frames = Session(graph.job.graph, options)
-                     .run(frames.all, *graph.job.sequence, measure ? static_cast<FrameSink&>(*measure) : sink);
+  graph.frames =
+      Session(graph.job.graph, options).run(frames.all, *graph.job.sequence, measure ? static_cast<FrameSink&>(*measure) : sink);
   graph.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (interrupted()) throw Interrupted{};
   graph.images = sink.images();
@@ -98,33 +134,9 @@ ReportedInputs read_inputs(const std::vector<ReportedGraph>& graphs, const Repor
   BufferPool pool;
   Executor executor;
   const std::map<std::string, const ReportedGraph*> inputs = find_inputs(graphs);
-  if (const auto noisy = inputs.find(kNoisy); noisy != inputs.end()) {
-    ReportSink sink(frames, {kNoisy}, reference_of(measuring), packed);
-    std::optional<MeasuringSink> measure;
-    if (measuring) {
-      MeasuringOptions options = *measuring;
-      options.outputs = {kNoisy};
-      measure.emplace(sink, std::move(options));
-    }
-    FrameSink& to = measure ? static_cast<FrameSink&>(*measure) : sink;
-    for (const std::int64_t frame : frames.all) {
-      if (interrupted()) throw Interrupted{};
-      to.write(kNoisy, frame, read_input(*noisy->second, kNoisy, frame, executor, pool));
-      if (measure) read.measured[frame] = measure->take(frame);
-    }
-    for (ReportImage image : {sink.images().at(kNoisy)}) {
-      image.kind = ReportImage::Kind::noisy;
-      read.images.push_back(std::move(image));
-    }
-    if (measure) read.totals = measure->totals();
-  }
-  if (measuring) {
-    ReportImage reference{"reference", ReportImage::Kind::reference, -1, QUELL_TYPE_COLOR, {}, {}};
-    for (const std::int64_t frame : frames.kept)
-      if (measuring->has_reference(frame))
-        reference.frames[frame] = packed.add(pack(measuring->reference.read(frame, pool)));
-    read.images.push_back(std::move(reference));
-  }
+  if (const auto noisy = inputs.find(kNoisy); noisy != inputs.end())
+    read_noisy(*noisy->second, frames, measuring, executor, packed, read);
+  if (measuring) read.images.push_back(read_reference(frames, *measuring, pool, packed));
   for (const auto& [name, graph] : inputs) {
     ReportImage image{name, ReportImage::Kind::input, -1, QUELL_TYPE_COLOR, {}, {}};
     if (name == kNoisy) continue;

@@ -44,8 +44,8 @@ struct ReportedInputs {
   std::map<std::int64_t, std::vector<MeasuredOutput>> measured;
   std::vector<MeasuredOutput> totals;
 };
-/// Reads `color` and the reference of the frames that are kept, and all other inputs of those whose inner images are shown. Throws
-/// Interrupted.
+/// Reads `color` and the reference of the frames that are kept, and all other inputs of those whose inner images are shown.
+/// Throws Interrupted.
 ReportedInputs read_inputs(const std::vector<ReportedGraph>& graphs, const ReportFrames& frames,
                            const std::optional<MeasuringOptions>& measuring, PackedImages& packed);
 
