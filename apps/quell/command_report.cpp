@@ -114,7 +114,7 @@ double estimate_bytes(const Report& report) {
       add(shape, report.frames.kept.size(), 2);
       add({QUELL_TYPE_SCALAR, shape.size}, report.frames.kept.size(), report.measuring ? 0.5 : 0);
     }
-    for (const std::string& name : graph.inner) add(plan.shape(plan.graph->find(name)), report.frames.inner.size(), 2);
+    for (const std::string& name : graph.inner) add(plan.shape(plan.graph->find(name)), report.frames.inner.size(), 4);
   }
   const std::optional<Shape> noisy = report.graphs.front().job.sequence->shape("color");
   if (noisy) add(*noisy, report.frames.kept.size() * (report.measuring ? 2 : 1), 2);

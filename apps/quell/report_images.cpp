@@ -13,7 +13,8 @@ void ReportSink::write(std::string_view output, std::int64_t frame, const Item& 
   const Image* image = item.image();
   const bool is_result = results_.contains(output);
   if (!image || !(is_result ? frames_.kept : frames_.inner).contains(frame)) return;
-  const int number = packed_.add(pack(*image));
+  const bool is_exact = frames_.inner.contains(frame) && exact_.contains(output);
+  const int number = packed_.add(pack(*image, is_exact ? Precision::exact : Precision::shown));
   const bool has_map = is_result && image->type() == QUELL_TYPE_COLOR && reference_.series &&
                        (reference_.is_for_all || reference_.series->has(frame));
   const int map = has_map ? make_map(frame, *image) : -1;

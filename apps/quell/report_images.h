@@ -48,6 +48,9 @@ class ReportSink final : public FrameSink {
   /// `results` are names of outputs. What is given must outlive the sink.
   ReportSink(const ReportFrames& frames, std::set<std::string, std::less<>> results, Reference reference, PackedImages& packed);
 
+  /// Of the frames whose inner images are shown, these are kept exactly.
+  void keep_exactly(std::set<std::string, std::less<>> names) { exact_ = std::move(names); }
+
   void write(std::string_view output, std::int64_t frame, const Item& item) override;
   bool uses_processor() const override { return true; }
 
@@ -60,6 +63,7 @@ class ReportSink final : public FrameSink {
   int make_map(std::int64_t frame, const Image& image);
   const ReportFrames& frames_;
   const std::set<std::string, std::less<>> results_;
+  std::set<std::string, std::less<>> exact_;
   const Reference reference_;
   PackedImages& packed_;
   BufferPool pool_;

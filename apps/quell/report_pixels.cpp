@@ -55,12 +55,19 @@ PackedImage pack_bits(const Image& image, std::size_t bytes_per_value, const cha
   return {image.size(), image.channels(), format, deflate_to_text(planes)};
 }
 
-bool fits_half(FloatImage image) {
+bool fits_half(float value) { return !(std::abs(value) > kLargestHalf) || !std::isfinite(value); }
+
+/// Whether a half float holds it without rounding: 10 bits behind the leading one, or multiples of 2^-24.
+bool is_half(float value) {
+  if (!fits_half(value)) return false;
+  if (std::abs(value) >= 0x1p-14F) return (std::bit_cast<std::uint32_t>(value) & 0x1fff) == 0;
+  return std::nearbyint(value * 0x1p24F) == value * 0x1p24F;
+}
+
+bool all_of(FloatImage image, bool (*test)(float)) {
   for (int c = 0; c < image.channels; ++c)
     for (int y = 0; y < image.height; ++y)
-      if (!std::all_of(image.row(y, c), image.row(y, c) + image.width,
-                       [](float value) { return !(std::abs(value) > kLargestHalf) || !std::isfinite(value); }))
-        return false;
+      if (!std::all_of(image.row(y, c), image.row(y, c) + image.width, test)) return false;
   return true;
 }
 
@@ -79,13 +86,13 @@ std::uint16_t to_half(float value) {
   return static_cast<std::uint16_t>(sign | (rounded - 0x38000000) >> 13);
 }
 
-PackedImage pack(const Image& image) {
+PackedImage pack(const Image& image, Precision precision) {
   if (info(image.type()).format == QUELL_FORMAT_U32) {
     const IdImage ids = image.ids();
     return pack_bits(image, 4, "u32", [&](int x, int y, int c) { return ids.at(x, y, c); });
   }
   const FloatImage values = image.floats();
-  if (fits_half(values))
+  if (all_of(values, precision == Precision::exact ? is_half : fits_half))
     return pack_bits(image, 2, "f16", [&](int x, int y, int c) { return std::uint32_t{to_half(values.at(x, y, c))}; });
   return pack_bits(image, 4, "f32", [&](int x, int y, int c) { return std::bit_cast<std::uint32_t>(values.at(x, y, c)); });
 }

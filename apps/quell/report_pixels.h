@@ -18,11 +18,16 @@ std::uint16_t to_half(float value);
 struct PackedImage {
   Size size;
   int channels = 0;
-  std::string format;  ///< "f16"; "f32" where a value is beyond half floats; "u32" for ids; "u8" for maps of 0..1 times 255
+  std::string format;  ///< "f16"; "f32" where they do not do; "u32" for ids; "u8" for maps of 0..1 times 255
   std::string text;
 };
 
-PackedImage pack(const Image& image);
+/// What is kept of floats.
+enum class Precision {
+  shown,  ///< the nearest half floats, unless a value is beyond them
+  exact,  ///< floats, unless half floats hold the same values
+};
+PackedImage pack(const Image& image, Precision precision = Precision::shown);
 /// Of a map of errors within 0..1, with 8 bits.
 PackedImage pack_map(const Image& map);
 

@@ -25,6 +25,27 @@ ReportSink::Reference reference_of(const std::optional<MeasuringOptions>& measur
   return {&measuring->reference, measuring->compare.display, measuring->reference.is_single() && measuring->frames.size() == 1};
 }
 
+/// What nodes that look at a neighborhood read and yield, as the sink is told: the weights of filters are made of it, and have to
+/// reproduce it.
+std::set<std::string, std::less<>> find_filtered(const Plan& plan) {
+  std::set<std::string, std::less<>> names;
+  const std::vector<PlannedResult> results = plan.results();
+  const auto add = [&](const Endpoint& endpoint) {
+    const auto result = std::ranges::find(results, endpoint, &PlannedResult::from);
+    names.insert(result != results.end() ? result->name : plan.graph->describe(endpoint));
+  };
+  for (const PlannedNode& planned : plan.nodes) {
+    if (std::ranges::none_of(planned.radius, [](int radius) { return radius > 0 && radius != QUELL_RADIUS_UNBOUNDED; })) continue;
+    for (const std::vector<Edge>& edges : plan.graph->nodes[static_cast<std::size_t>(planned.node)].inputs)
+      for (const Edge& edge : edges)
+        if (edge.delay == 0 && !edge.from.is_nothing()) add(edge.from);
+    for (std::size_t port = 0; port < planned.outputs.size(); ++port)
+      for (std::size_t item = 0; item < planned.outputs[port].size(); ++item)
+        add({planned.node, static_cast<int>(port), static_cast<int>(item)});
+  }
+  return names;
+}
+
 /// Inputs that are read by some graph, each from the first graph that reads it.
 std::map<std::string, const ReportedGraph*> find_inputs(const std::vector<ReportedGraph>& graphs) {
   std::map<std::string, const ReportedGraph*> inputs;
@@ -55,6 +76,7 @@ void read_noisy(const ReportedGraph& graph, const ReportFrames& frames, const st
                 Executor& executor, PackedImages& packed, ReportedInputs& read) {
   BufferPool pool;
   ReportSink sink(frames, {kNoisy}, reference_of(measuring), packed);
+  sink.keep_exactly({kNoisy});
   std::optional<MeasuringSink> measure;
   if (measuring) {
     MeasuringOptions options = *measuring;
@@ -95,6 +117,7 @@ std::vector<std::string> list_inner_images(const Plan& plan) {
 void run_for_report(ReportedGraph& graph, const ReportFrames& frames, const std::optional<MeasuringOptions>& measuring,
                     const SessionOptions& session, PackedImages& packed) {
   ReportSink sink(frames, names_of_results(graph.job.plan), reference_of(measuring), packed);
+  sink.keep_exactly(find_filtered(graph.job.plan));
   std::optional<MeasuringSink> measure;
   if (measuring) measure.emplace(sink, *measuring);
   SessionOptions options = session;
@@ -144,7 +167,7 @@ ReportedInputs read_inputs(const std::vector<ReportedGraph>& graphs, const Repor
       const Item item = read_input(*graph, name, frame, executor, pool);
       if (!item.image()) continue;
       image.type = item.image()->type();
-      image.frames[frame] = packed.add(pack(*item.image()));
+      image.frames[frame] = packed.add(pack(*item.image(), Precision::exact));
     }
     if (!image.frames.empty()) read.images.push_back(std::move(image));
   }

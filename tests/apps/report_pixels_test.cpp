@@ -90,6 +90,22 @@ TEST(Pack, WhatIsBeyondHalvesStaysFloat) {
   EXPECT_THAT(unpack(packed, 4), ElementsAre(0xf9, 0x02, 0x15, 0x50));
 }
 
+TEST(Pack, ExactlyKeepsFloatsThatNoHalfEquals) {
+  BufferPool pool;
+  Image image(QUELL_TYPE_SCALAR, {1, 1}, pool);
+  const auto format = [&](float value) {
+    image.writable_floats().at(0, 0, 0) = value;
+    return pack(image, Precision::exact).format;
+  };
+  for (std::uint32_t bits = 0; bits < 65536; bits += 7) {
+    const auto value = static_cast<float>(half_value(bits));
+    ASSERT_EQ(format(value), "f16") << value;
+    if (std::isfinite(value)) {
+      ASSERT_EQ(format(std::nextafter(value, 1e9F)), "f32") << value;
+    }
+  }
+}
+
 TEST(Pack, IdsAndMaps) {
   BufferPool pool;
   Image ids(QUELL_TYPE_ID, {1, 1}, pool);

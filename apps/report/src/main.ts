@@ -7,6 +7,7 @@ import { showProvenance } from "./provenance";
 import { firstState, Store } from "./state";
 import { Story } from "./story";
 import { showFigures } from "./table";
+import { filterNames } from "./taps";
 import { find } from "./text";
 import { Viewer } from "./viewer";
 
@@ -38,11 +39,15 @@ function start() {
   showTimes(report);
   showDrawings(report);
   showProvenance(report);
-  // For tests: when everything that was asked for is drawn.
-  (window as unknown as { reportReady: () => Promise<void> }).reportReady = async () => {
-    await story.ready();
-    await viewer.ready();
-  };
+  // For tests: when everything that was asked for is shown, and the weights of a filter.
+  Object.assign(window, {
+    reportReady: async () => {
+      await story.ready();
+      await viewer.ready();
+    },
+    reportWeights: story.weightsOf.bind(story),
+    reportFilters: filterNames,
+  });
 }
 
 try {

@@ -4,7 +4,9 @@ import type { Pictures } from "./pictures";
 import type { Pixels } from "./pixels";
 import { displayCurve } from "./shade";
 import type { Store } from "./state";
+import { apply, findTaps, type Inputs, isFilter, type Taps } from "./taps";
 import { find, make, valueText } from "./text";
+import { describeWeights } from "./weights";
 
 interface Value {
   image: ImageSeries;
@@ -116,14 +118,62 @@ export class Story {
     const reference = report.images.find((image) => image.kind === "reference");
     entries.push({ first: make("th", { scope: "row" }, "reference"), port: "", image: reference });
     const values = await Promise.all(entries.map(({ image }) => this.value(image, frame)));
-    let last: GraphNode | undefined;
+    const weights = new Map<GraphNode, HTMLElement>();
+    await Promise.all(
+      graph.nodes.filter(isFilter).map(async (node) => {
+        const row = await this.weightsRow(node, frame);
+        if (row) weights.set(node, row);
+      }),
+    );
     return entries.flatMap(({ first, port, isLength, node }, index) => {
       const value = values[index];
       if (!value) return [];
-      if (node && node === last) first.classList.add("again");
-      last = node;
-      return [make("tr", isLength ? { class: "length" } : {}, first, make("td", {}, port), ...this.cells(value))];
+      if (node && node === entries[index - 1]?.node) first.classList.add("again");
+      const row = make("tr", isLength ? { class: "length" } : {}, first, make("td", {}, port), ...this.cells(value));
+      const more = node && node !== entries[index + 1]?.node ? weights.get(node) : undefined;
+      return more ? [row, more] : [row];
     });
+  }
+
+  /** What a source of the graph yields. */
+  private source(from: string): ImageSeries | undefined {
+    const { images, graphs } = this.store.report;
+    const output = graphs[this.graph]!.nodes.flatMap((node) => node.outputs).find((other) => other.name === from);
+    if (output) return this.image(output);
+    return images.find((image) => (image.kind === "noisy" || image.kind === "input") && image.name === from);
+  }
+
+  /** The weights of a filter's taps at a pixel of its own image, what they make of it, and what the pass made. */
+  async weights(node: GraphNode, frame: number, pixel?: [number, number]): Promise<{ taps: Taps; at: [number, number]; made: number[]; given: number[] } | null> {
+    if (node.inputs.some((input) => input.delay)) return null; // images of other frames are not here
+    const ports = new Map<string, Pixels[]>();
+    for (const input of node.inputs) {
+      const number = this.source(input.from)?.frames[frame];
+      if (number !== undefined) ports.set(input.port, [...(ports.get(input.port) ?? []), await this.pictures.store.get(number)]);
+    }
+    const inputs: Inputs = { all: (port) => ports.get(port) ?? [] };
+    const image = [...ports.values()][0]?.[0];
+    if (!image || (!pixel && !this.store.state.pixel)) return null;
+    const at = pixel ?? this.place(this.store.state.pixel!, image);
+    const taps = findTaps(node, inputs, ...at);
+    const output = taps && node.outputs.find((other) => other.port === taps.output);
+    const number = output && this.image(output)?.frames[frame];
+    if (!taps || number === undefined || number === null) return null;
+    const given = (await this.pictures.store.get(number)).all(...at);
+    return { taps, at, made: apply(taps.taps, inputs.all(taps.port)[0]!), given };
+  }
+  private async weightsRow(node: GraphNode, frame: number): Promise<HTMLElement | null> {
+    const found = await this.weights(node, frame);
+    if (!found) return null;
+    const details = make("details", {}, make("summary", {}, `weights of ${found.taps.taps.length} tap${found.taps.taps.length === 1 ? "" : "s"}`));
+    details.addEventListener("toggle", () => details.open && details.children.length === 1 && details.append(describeWeights(found.taps, found.at, found.made, found.given)));
+    return make("tr", { class: "weights" }, make("th", { scope: "row", class: "again" }, make("b", {}, node.name)), make("td", { colspan: "3" }, details));
+  }
+  /** For tests: of a node by its name. */
+  async weightsOf(graph: number, name: string, x: number, y: number) {
+    this.graph = graph;
+    const node = this.store.report.graphs[graph]!.nodes.find((other) => other.name === name)!;
+    return this.weights(node, this.frame!, [x, y]);
   }
   private portText(output: NodeOutput): string {
     return output.result ? `${output.port} → output ${output.result}` : output.port;

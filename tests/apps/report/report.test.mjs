@@ -76,10 +76,10 @@ async function open(file = "report.html", options = {}) {
   };
 }
 
-async function choosePixel({ page, ready }, x, y) {
+async function choosePixel({ page, ready }, x, y, [middleX, middleY] = [160, 90]) {
   await page.focus("#canvas");
-  await page.keyboard.press("ArrowLeft"); // the middle of the picture: 160, 90
-  for (const [from, to, less, more] of [[160, x, "ArrowLeft", "ArrowRight"], [90, y, "ArrowUp", "ArrowDown"]]) {
+  await page.keyboard.press("ArrowLeft"); // chooses the middle of the picture
+  for (const [from, to, less, more] of [[middleX, x, "ArrowLeft", "ArrowRight"], [middleY, y, "ArrowUp", "ArrowDown"]]) {
     const key = to < from ? less : more;
     for (let i = 0; i < Math.floor(Math.abs(to - from) / 10); ++i) await page.keyboard.press(`Shift+${key}`);
     for (let i = 0; i < Math.abs(to - from) % 10; ++i) await page.keyboard.press(key);
@@ -230,6 +230,54 @@ test("a pixel's story tells what each pass yields, and how long its history is",
   await report.page.selectOption("#story-graph", { label: "games202" });
   await report.ready();
   assert.ok((await report.page.locator("#story tbody tr").allTextContents()).some((row) => row.startsWith("filter")));
+  await report.end();
+});
+
+test("weights of every filter sum to 1 and reproduce what its pass gave", async () => {
+  const guides = { normal: "normal", position: "position" };
+  const svgf = { normal: "normal", depth: "depth", variance: "variance.variance" };
+  const color = "color";
+  const nodes = {
+    moments: { pass: "moments", in: { color } },
+    slope: { pass: "depth_gradient", in: { depth: "depth" } },
+    variance: { pass: "variance", in: { moments: "moments.moments", color, depth: "depth", depth_gradient: "slope.gradient", normal: "normal" },
+      params: { filter_color: true, sigma_l: 2 } },
+    variance_blur: { pass: "variance_blur", in: { variance: "variance.variance" } },
+    gaussian: { pass: "gaussian", in: { image: "color" }, params: { sigma: 1.5 } },
+    bilateral: { pass: "bilateral", in: { color } },
+    joint: { pass: "joint_bilateral", in: { color, ...guides }, params: { radius: 5 } },
+    joint_world: { pass: "joint_bilateral", in: { color, ...guides }, params: { radius: 4, coord: "world", sigma_coord: 0.5, normal_measure: "difference" } },
+    joint_z: { pass: "joint_bilateral", in: { color, ...guides }, params: { radius: 4, surface: "z", sigma_color: 3 } },
+    joint_alone: { pass: "joint_bilateral", in: { color }, params: { radius: 3 } },
+    svgf: { pass: "atrous", in: { color: "variance.color", ...svgf }, params: { level: 1 } },
+    svgf_given: { pass: "atrous", in: { color: "variance.color", ...svgf, depth_gradient: "slope.gradient", blurred_variance: "variance_blur.variance" },
+      params: { level: 2, sigma_l: 10, eps_variance: 1e-4 } },
+    dammertz: { pass: "atrous", in: { color, ...guides }, params: { stops: "dammertz", level: 1, phi_normal: 1 } },
+    games: { pass: "atrous", in: { color, ...guides }, params: { stops: "joint_bilateral", level: 1 } },
+    nlm: { pass: "nlm", in: { color, variance: "variance.variance", feature: ["albedo", "normal"] }, params: { radius: 4, patch_radius: 1 } },
+  };
+  const [guided, own] = [Object.keys(nodes).slice(2), { variance_blur: "variance", gaussian: "image" }];
+  const outputs = Object.fromEntries(guided.map((name) => [`of_${name}`, `${name}.${own[name] ?? "color"}`]));
+  const inputs = { color: "color", albedo: "albedo", normal: "normal", position: "position", depth: "depth" };
+  writeFileSync(join(folder, "filters.json"), JSON.stringify({ quell: 1, inputs, nodes, outputs }));
+  run("report", sample, "filters.json", "--frames", "2", "--crop", "200,60,70,50", "-o", "filters.html");
+  const report = await open("filters.html");
+  const seen = new Set(guided.map((name) => nodes[name].pass));
+  assert.deepEqual([...seen].sort(), (await report.page.evaluate(() => window.reportFilters)).sort());
+  for (const name of guided)
+    for (const [x, y] of [[0, 0], [69, 49], [13, 7], [30, 25], [45, 40], [62, 3]]) {
+      const found = await report.page.evaluate(([node, at]) => window.reportWeights(0, node, ...at), [name, [x, y]]);
+      assert.ok(found, `${name} has no weights at ${x}, ${y}`);
+      const sum = found.taps.taps.reduce((total, tap) => total + tap.weight, 0);
+      assert.ok(Math.abs(sum - 1) < 1e-12, `${name}: ${sum}`);
+      found.made.forEach((value, i) => {
+        const want = found.given[i];
+        assert.ok(Math.abs(value - want) <= 1e-5 * Math.max(1, Math.abs(want)), `${name} at ${x}, ${y}: ${found.made}, not ${found.given}`);
+      });
+    }
+  await choosePixel(report, 30, 25, [35, 25]);
+  await report.page.locator("#story tr.weights summary").first().click();
+  assert.match(await report.page.textContent("#story .taps p"), /sum to 1\.000000 .* apart|the same/);
   await report.end();
 });
 
