@@ -88,8 +88,8 @@ export function showPlots(report: Report) {
         color: { domain: series.map(({ name }) => name), range: series.map(({ color }) => color) },
         marks: [
           Plot.lineY(data, { x: "frame", y: "value", z: "name", stroke: "name", strokeWidth: 2 }),
-          Plot.dot(data, { x: "frame", y: "value", z: null, fill: "name", r: 2.5 }),
-          Plot.tip(data, Plot.pointer({ x: "frame", y: "value", z: null, stroke: "name", title: (d: Point) => `${d.name}\nframe ${d.frame}\n${d.value.toPrecision(5)}` })),
+          Plot.dot(data, { x: "frame", y: "value", fill: "name", r: 2.5 }),
+          Plot.tip(data, Plot.pointer({ x: "frame", y: "value", stroke: "name", title: (d: Point) => `${d.name}\nframe ${d.frame}\n${d.value.toPrecision(5)}` })),
         ],
       }),
     );
