@@ -21,8 +21,10 @@
 #include "run_options.h"
 #include "run_reference.h"
 #include "run_summary.h"
+#include "tev_sink.h"
 #include "trace_file.h"
 #include "variants.h"
+#include "video_sink.h"
 #include "watched_files.h"
 
 namespace quell::app {
@@ -38,6 +40,8 @@ struct Arguments {
   ReferenceArguments reference;
   std::vector<std::string> dumps;
   std::optional<std::filesystem::path> log_json, trace;
+  std::optional<std::string> tev;
+  std::string frames_per_second = "24";
   bool dry_run = false, watch = false;
 };
 
@@ -76,7 +80,10 @@ ExitCode exit_code_of(Ending ending) {
 struct Preparation {
   Job job;
   std::unique_ptr<FileSink> sink;
-  std::unique_ptr<MeasuringSink> measuring;  ///< in front of `sink`; null without --reference
+  std::optional<MeasuringOptions> to_measure;  ///< with `measuring`, which takes them
+  std::unique_ptr<VideoSink> video;            ///< in place of `sink`; null without a video
+  std::unique_ptr<TevSink> tev;                ///< in front of that; null without --tev
+  std::unique_ptr<MeasuringSink> measuring;    ///< in front of all; null without --reference
   std::vector<ResultFiles> results;
   std::map<std::string, std::string> labels;  ///< of the results, as label_results() has them
   SessionOptions options;
@@ -123,6 +130,14 @@ SessionOptions with_listeners(SessionOptions options, std::optional<TraceFile>& 
   return options;
 }
 
+/// What the session writes to.
+FrameSink& front_sink(const Preparation& run) {
+  if (run.measuring) return *run.measuring;
+  if (run.tev) return *run.tev;
+  if (run.video) return *run.video;
+  return *run.sink;
+}
+
 /// With `watch`, what has changed since its last run.
 RerunReport run_frames(Preparation& run, SessionOptions options, Progress& progress, RunLog& log, Watch* watch) {
   const Job& job = run.job;
@@ -130,8 +145,9 @@ RerunReport run_frames(Preparation& run, SessionOptions options, Progress& progr
   options.on_frame = [&](const FrameReport& report) {
     const BufferPool::Usage usage = watch ? watch->rerun.usage() : session->pool().usage();
     tell_frame(report, usage, run, progress, log);
+    if (run.video) run.video->end_frame(report.frame, report.ok);
   };
-  FrameSink& sink = run.measuring ? static_cast<FrameSink&>(*run.measuring) : *run.sink;
+  FrameSink& sink = front_sink(run);
   if (watch) {
     watch->rerun.on_restart([&] {
       progress.restart();
@@ -151,6 +167,7 @@ ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log,
   const RerunReport rerun = run_frames(run, with_listeners(run.options, trace, log), progress, log, watch);
   const std::vector<FrameReport>& reports = rerun.frames;
   console.set_status("");
+  if (run.video) run.video->finish();
 
   tell_new_warnings(job);
   if (run.measuring) tell_new_warnings(run.measuring->options(), job);
@@ -174,19 +191,56 @@ ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log,
   return code;
 }
 
-/// Null without --reference.
-std::unique_ptr<MeasuringSink> make_measuring_sink(const Arguments& arguments, const Job& job,
-                                                   const std::vector<ResultFiles>& results, int threads, FrameSink& sink) {
+/// Nothing without --reference.
+std::optional<MeasuringOptions> find_measuring(const Arguments& arguments, const Job& job,
+                                               const std::vector<ResultFiles>& results, int threads) {
   std::optional<MeasuringOptions> options = prepare_measuring(arguments.reference, arguments.sequence, job, results);
-  if (!options) return nullptr;
-  if (!arguments.dry_run) complete_measuring(*options, threads);
-  return std::make_unique<MeasuringSink>(sink, std::move(*options));
+  if (options && !arguments.dry_run) complete_measuring(*options, threads);
+  return options;
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+/// What a video cannot do must not be ignored.
+void check_video(const Arguments& arguments) {
+  const auto refuse = [](const char* option) {
+    throw Error(Fault::usage, option, "it is for images, and --out names a video; name a folder, or leave it out");
+  };
+  if (!arguments.dumps.empty()) refuse("--dump");
+  if (!arguments.output.formats.empty()) refuse("--format");
+  if (arguments.output.is_layered) refuse("--layers");
+  if (arguments.output.keep_channels) refuse("--keep-channels");
+  if (arguments.watch) refuse("--watch");
+}
+
+/// One file, of every frame.
+std::vector<ResultFiles> list_video(const Job& job, const std::filesystem::path& file) {
+  return {{find_video_output(job.plan).name, file.string(), std::vector<std::filesystem::path>(job.frames.size(), file)}};
+}
+
+std::unique_ptr<VideoSink> open_video(const Arguments& arguments, const Job& job) {
+  const PlannedResult result = find_video_output(job.plan);
+  return std::make_unique<VideoSink>(VideoOptions{arguments.output.folder, result.name, job.plan.shape(result.from).size,
+                                                  parse_number(arguments.frames_per_second, "--fps", 0.01, 1000)});
+}
+
+/// Opens what stands in front of the files, before anything is computed.
+void open_sinks(Preparation& run, const Arguments& arguments) {
+  if (is_video(arguments.output.folder)) run.video = open_video(arguments, run.job);
+  if (arguments.tev) run.tev = std::make_unique<TevSink>(front_sink(run), *arguments.tev);
+  if (run.to_measure) run.measuring = std::make_unique<MeasuringSink>(front_sink(run), std::move(*run.to_measure));
 }
 
 Preparation prepare(const Arguments& arguments, Watch* watch) {
+  const bool is_to_video = is_video(arguments.output.folder);
+  if (is_to_video) check_video(arguments);
   SessionOptions options = parse_schedule(arguments.schedule);
   options.dumps = arguments.dumps;
-  FileSinkOptions output = parse_output(arguments.output);
+  OutputArguments files = arguments.output;
+  if (is_to_video) files.folder = folder_of(arguments.output.folder);
+  FileSinkOptions output = parse_output(files);
   const std::shared_ptr<const Graph> graph = watch ? load(arguments.graph, watch->passes) : load(arguments.graph);
   if (watch) watch->files.add(graph->files);
   const Job* before = watch && watch->last ? &watch->last->job : nullptr;
@@ -196,12 +250,14 @@ Preparation prepare(const Arguments& arguments, Watch* watch) {
   warn_of_idle_cuts(options.cuts, job.frames, job.plan);
   complete_output(output, arguments.output, job);
   auto sink = std::make_unique<FileSink>(output);
-  std::vector<ResultFiles> results = list_results(job, *sink, output);
+  std::vector<ResultFiles> results = is_to_video ? list_video(job, arguments.output.folder) : list_results(job, *sink, output);
   refuse_to_replace_inputs(job, results);
   if (output.keep_channels) tell_kept_channels(*sink, job);
   std::map<std::string, std::string> labels = label_results(output, job);
-  std::unique_ptr<MeasuringSink> measuring = make_measuring_sink(arguments, job, results, options.threads, *sink);
-  return {std::move(job), std::move(sink), std::move(measuring), std::move(results), std::move(labels), std::move(options)};
+  std::optional<MeasuringOptions> measuring = find_measuring(arguments, job, results, options.threads);
+  Preparation run{.job = std::move(job), .sink = std::move(sink), .to_measure = std::move(measuring)};
+  run.results = std::move(results), run.labels = std::move(labels), run.options = std::move(options);
+  return run;
 }
 
 ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, Watch* watch = nullptr) {
@@ -210,12 +266,13 @@ ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, W
   const int threads = options.threads > 0 ? options.threads : available_threads();
   const Window window = choose_window(run.job.plan, threads, options.frames_in_flight, options.memory);
   if (arguments.dry_run) {
-    std::cout << describe_dry_run(run.job, run.results, run.measuring ? describe(run.measuring->options()) : "");
+    std::cout << describe_dry_run(run.job, run.results, run.to_measure ? describe(*run.to_measure) : "");
     return kOk;
   }
   spdlog::debug("up to {} frames at a time ({}), and {} of images", window.frames, window.reason, format_bytes(window.memory));
   spdlog::debug("computing on {}", current_isa());
-  prepare_folder(arguments.output.folder);
+  prepare_folder(is_video(arguments.output.folder) ? folder_of(arguments.output.folder) : arguments.output.folder);
+  open_sinks(run, arguments);
   log.start(run.job, run.results, options, window);
   std::optional<TraceFile> trace;
   if (arguments.trace) trace.emplace(*arguments.trace);
@@ -270,6 +327,10 @@ ExitCode run(const Arguments& arguments, Console& console) {
 void add_output_options(CLI::App& app, Arguments& arguments) {
   add_options(app, arguments.output);
   add_repeatable(app, "--dump", arguments.dumps, "NODE.PORT", "Write an inner image of the graph, too; repeatable.")
+      ->group(kOutputGroup);
+  add_text(app, "--fps", arguments.frames_per_second, "N", "Frames per second of a video; 24 by default.")->group(kOutputGroup);
+  app.add_option("--tev", arguments.tev, "Show images in a running tev, the viewer, too, as they are finished.")
+      ->type_name("HOST:PORT")
       ->group(kOutputGroup);
   app.add_option("--log-json", arguments.log_json, "Write what happens to a file, one JSON object a line, as it happens.")
       ->type_name("FILE")

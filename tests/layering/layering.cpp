@@ -39,9 +39,10 @@ const std::map<std::string, Names, std::less<>> kThirdParty = {
 };
 
 // The operating system's headers. The SDK and the passes do without.
-const Names kSystem = {"dlfcn.h",    "elf.h",          "fcntl.h",    "link.h",        "poll.h",        "sched.h",
-                       "signal.h",   "spawn.h",        "unistd.h",   "sys/eventfd.h", "sys/inotify.h", "sys/ioctl.h",
-                       "sys/mman.h", "sys/resource.h", "sys/stat.h", "sys/types.h",   "sys/wait.h"};
+const Names kSystem = {"dlfcn.h",    "elf.h",          "fcntl.h",       "link.h",        "netdb.h",
+                       "poll.h",     "sched.h",        "sys/socket.h",  "sys/time.h",    "signal.h",
+                       "spawn.h",    "unistd.h",       "sys/eventfd.h", "sys/inotify.h", "sys/ioctl.h",
+                       "sys/mman.h", "sys/resource.h", "sys/stat.h",    "sys/types.h",   "sys/wait.h"};
 const Names kCHeaders = {"stddef.h", "stdint.h"};  // abi.h is C
 
 /// "core/graph" for core/graph/plan.cpp, "passes" and "apps" for all that lies below these.
