@@ -30,7 +30,11 @@ class Server {
     EXPECT_TRUE(listens) << std::strerror(errno);
     port_ = ntohs(address.sin_port);
   }
-  ~Server() { close(listening_); }
+  ~Server() {
+    shutdown(listening_, SHUT_RDWR);  // so that nobody waits for a connection that does not come
+    if (thread_.joinable()) thread_.join();
+    close(listening_);
+  }
 
   std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
   /// Takes no more than `most` bytes.

@@ -39,12 +39,13 @@ function start() {
   showTimes(report);
   showDrawings(report);
   showProvenance(report);
-  // For tests: when everything that was asked for is shown, and the weights of a filter.
+  // For tests: when everything that was asked for is shown, or only drawn; and the weights of a filter.
   Object.assign(window, {
     reportReady: async () => {
       await story.ready();
       await viewer.ready();
     },
+    reportDrawn: () => viewer.drawn(),
     reportWeights: story.weightsOf.bind(story),
     reportFilters: filterNames,
   });

@@ -8,6 +8,11 @@ export interface Picture {
   pixels: Pixels | null; // of a series; null for maps and differences
 }
 
+// Pixels of all pictures that are ready, 10 bytes each with their values: two images of 24 frames of 1920 x 1080 where there is
+// room for them. Browsers tell 8 GB for all that is more.
+const memory = (navigator as { deviceMemory?: number }).deviceMemory ?? 8;
+const mostPixels = memory >= 8 ? 110e6 : 25e6;
+
 function toCanvas(image: ImageData): HTMLCanvasElement {
   const canvas = document.createElement("canvas");
   canvas.width = image.width;
@@ -48,6 +53,11 @@ export class Pictures {
     });
   }
 
+  /** Whether there is room for more pictures than these. */
+  hasRoomFor(pictures: number, pixels: number): boolean {
+    return pictures * pixels <= mostPixels;
+  }
+
   private keep(key: string, make: () => Promise<Picture | null>): Promise<Picture | null> {
     const known = this.ready.get(key);
     if (known) {
@@ -64,9 +74,8 @@ export class Pictures {
     return made;
   }
   private forgetOldest(youngest: string) {
-    const most = 160e6; // pixels, of 4 bytes each: 77 pictures of 1920 x 1080
     for (const [key, picture] of this.ready) {
-      if (this.pixelsReady <= most || key === youngest) return;
+      if (this.pixelsReady <= mostPixels || key === youngest) return;
       this.ready.delete(key);
       void picture.then((old) => (this.pixelsReady -= old ? old.canvas.width * old.canvas.height : 0));
       return;

@@ -319,12 +319,17 @@ export class Viewer {
 
   private pending: Promise<void> = Promise.resolve();
   /** When what was asked for last is drawn. */
-  async ready(): Promise<void> {
+  async drawn(): Promise<void> {
     for (let last; last !== this.pending; ) {
       last = this.pending;
       await last;
     }
-    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    await new Promise((done) => requestAnimationFrame(() => setTimeout(done))); // behind drawNow, which was asked for before
+  }
+  /** When that is on the screen. */
+  async ready(): Promise<void> {
+    await this.drawn();
+    await new Promise((done) => requestAnimationFrame(done));
   }
 
   private load(): Promise<void> {
@@ -353,13 +358,28 @@ export class Viewer {
     this.readOut();
     this.prefetch();
   }
-  /** The frame that comes next while somebody scrubs or plays. */
+  /** All frames of what is shown, the next ones first, while nothing else is to be done: so that scrubbing waits for nothing. */
   private prefetch() {
     const { left, right, mode, frame, exposure } = this.store.state;
-    const { kept } = this.report;
-    const next = kept[(kept.indexOf(frame) + 1) % kept.length]!;
     if (mode === "difference" || mode === "flip") return;
-    for (const index of mode === "left" ? [left] : [left, right]) void this.pictures.series(this.report.images[index]!, next, exposure);
+    const { kept, images } = this.report;
+    const shown = mode === "left" ? [left] : [left, right];
+    const picture = this.shown.left ?? this.shown.right;
+    const pixels = picture ? picture.canvas.width * picture.canvas.height : 0;
+    const ahead = this.pictures.hasRoomFor(kept.length * shown.length, pixels) ? kept.length : 2;
+    const frames = Array.from({ length: Math.min(ahead, kept.length) }, (_, i) => kept[(kept.indexOf(frame) + i) % kept.length]!);
+    const turn = this.loading;
+    const idle = window.requestIdleCallback ?? ((act: () => void) => setTimeout(act, 1));
+    const next = (place: number) => {
+      const index = shown[place % shown.length]!;
+      const other = frames[Math.floor(place / shown.length)];
+      if (turn !== this.loading || other === undefined) {
+        if (other === undefined) this.canvas.dataset["prefetched"] = String(turn);
+        return;
+      }
+      void this.pictures.series(images[index]!, other, exposure).then(() => idle(() => next(place + 1)));
+    };
+    idle(() => next(0));
   }
 
   private resize() {

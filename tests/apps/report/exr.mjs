@@ -1,5 +1,5 @@
 // Reads what `quell run --compression none --type half` writes: one part, scan lines, half floats.
-import { readFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 
 export function halfValue(bits) {
   const exponent = (bits >> 10) & 31;
@@ -41,4 +41,37 @@ export function readExr(file) {
     const line = Number(data.readBigUInt64LE(headerEnd + 8 * y)) + 8; // behind the line's number and size
     return halfValue(data.readUInt16LE(line + 2 * (channels.indexOf(channel) * width + x)));
   };
+}
+
+function halfBits(value) {
+  if (value === 0) return 0;
+  const exponent = Math.floor(Math.log2(value));
+  return ((exponent + 15) << 10) | Math.floor((value / 2 ** exponent - 1) * 1024);
+}
+
+/** An image of half floats, not compressed, whose rows are all the same: `row` has those of red, green and blue, 2^-14 to 2. */
+export function writeExr(file, width, height, row) {
+  const text = (value) => Buffer.from(`${value}\0`, "latin1");
+  const ints = (...values) => Buffer.from(Int32Array.from(values).buffer);
+  const floats = (...values) => Buffer.from(Float32Array.from(values).buffer);
+  const attribute = (name, type, value) => Buffer.concat([text(name), text(type), ints(value.length), value]);
+  const window = ints(0, 0, width - 1, height - 1);
+  const channel = (name) => Buffer.concat([text(name), ints(1), Buffer.alloc(4), ints(1, 1)]);
+  const header = Buffer.concat([
+    ints(20000630, 2),
+    attribute("channels", "chlist", Buffer.concat([..."BGR"].map(channel).concat(Buffer.alloc(1)))),
+    attribute("compression", "compression", Buffer.alloc(1)),
+    attribute("dataWindow", "box2i", window),
+    attribute("displayWindow", "box2i", window),
+    attribute("lineOrder", "lineOrder", Buffer.alloc(1)),
+    attribute("pixelAspectRatio", "float", floats(1)),
+    attribute("screenWindowCenter", "v2f", floats(0, 0)),
+    attribute("screenWindowWidth", "float", floats(1)),
+    Buffer.alloc(1),
+  ]);
+  const values = Buffer.concat([2, 1, 0].map((c) => Buffer.from(Uint16Array.from(row[c], halfBits).buffer)));
+  const lines = Array.from({ length: height }, (_, y) => [ints(y, values.length), values]);
+  const size = 8 + values.length;
+  const places = BigUint64Array.from({ length: height }, (_, y) => BigInt(header.length + 8 * height + y * size));
+  writeFileSync(file, Buffer.concat([header, Buffer.from(places.buffer), ...lines.flat()]));
 }
