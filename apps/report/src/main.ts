@@ -25,20 +25,11 @@ function tellFailures(report: Report) {
   find("trouble").textContent = failures.join("; ");
 }
 
-function start() {
-  const report = readReport();
-  find("title").textContent = report.title;
-  find("about").textContent = describe(report);
-  tellFailures(report);
+function showImages(report: Report) {
   const store = new Store(report, firstState(report));
   const pictures = new Pictures(report);
   const viewer = new Viewer(store, pictures);
   const story = new Story(store, pictures);
-  showFigures(report);
-  showPlots(report);
-  showTimes(report);
-  showDrawings(report);
-  showProvenance(report);
   // For tests: when everything that was asked for is shown, or only drawn; and the weights of a filter.
   Object.assign(window, {
     reportReady: async () => {
@@ -49,6 +40,20 @@ function start() {
     reportWeights: story.weightsOf.bind(story),
     reportFilters: filterNames,
   });
+}
+
+function start() {
+  const report = readReport();
+  find("title").textContent = report.title;
+  find("about").textContent = describe(report);
+  tellFailures(report);
+  if (report.images.length > 0) showImages(report);
+  else for (const id of ["viewer", "story"]) find(id).hidden = true;
+  showFigures(report);
+  showPlots(report);
+  showTimes(report);
+  showDrawings(report);
+  showProvenance(report);
 }
 
 try {

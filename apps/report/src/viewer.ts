@@ -160,7 +160,7 @@ export class Viewer {
       down.set(event.pointerId, at);
       if (down.size === 2) pinch = apart();
       moved = 0;
-      const isOnLine = this.store.state.mode === "wipe" && Math.abs(at.x - this.lineX()) <= kHandle;
+      const isOnLine = this.hasLine && Math.abs(at.x - this.lineX()) <= kHandle;
       dragged = isOnLine ? "wipe" : "picture";
     });
     canvas.addEventListener("pointermove", (event) => {
@@ -168,7 +168,7 @@ export class Viewer {
       const before = down.get(event.pointerId);
       if (!before) {
         this.hover = this.pixelAt(at.x, at.y);
-        const isOnLine = this.store.state.mode === "wipe" && Math.abs(at.x - this.lineX()) <= kHandle / 2;
+        const isOnLine = this.hasLine && Math.abs(at.x - this.lineX()) <= kHandle / 2;
         canvas.style.cursor = isOnLine ? "ew-resize" : "crosshair";
         return this.readOut();
       }
@@ -212,6 +212,10 @@ export class Viewer {
     );
   }
 
+  /** Between the left and the right picture, in one pane. */
+  private get hasLine() {
+    return this.store.state.mode === "wipe" || this.store.state.mode === "flip";
+  }
   private get panes() {
     return this.store.state.mode === "side" ? 2 : 1;
   }
@@ -302,7 +306,7 @@ export class Viewer {
     find<HTMLInputElement>("exposure").value = String(state.exposure);
     find("exposure-text").textContent = `${state.exposure > 0 ? "+" : ""}${state.exposure}`.replace("-", "−");
     find<HTMLInputElement>("wipe").value = String(Math.round(100 * state.wipe));
-    find("wipe-label").hidden = state.mode !== "wipe";
+    find("wipe-label").hidden = !this.hasLine;
     const names = { left: title(this.report, image(state.left)), right: title(this.report, image(state.right)) };
     const both = { wipe: 1, side: 1, left: 0, difference: 0, flip: 1 }[state.mode];
     find("left-name").textContent =
@@ -410,7 +414,7 @@ export class Viewer {
     context.clearRect(0, 0, this.canvas.width, this.canvas.height);
     context.imageSmoothingEnabled = view.zoom * ratio < 1;
     const { left, right } = this.shown;
-    const hasLine = mode === "wipe" || mode === "flip";
+    const { hasLine } = this;
     const line = hasLine ? this.lineX() : view.paneWidth;
     this.drawPicture(left, 0, 0, hasLine && right ? line : view.paneWidth);
     if (mode === "side") this.drawPicture(right, view.paneWidth, 0, view.paneWidth);
