@@ -59,6 +59,7 @@ bool fits_half(float value) { return !(std::abs(value) > kLargestHalf) || !std::
 
 /// Whether a half float holds it without rounding: 10 bits behind the leading one, or multiples of 2^-24.
 bool is_half(float value) {
+  if (!std::isfinite(value)) return true;
   if (!fits_half(value)) return false;
   if (std::abs(value) >= 0x1p-14F) return (std::bit_cast<std::uint32_t>(value) & 0x1fff) == 0;
   return std::nearbyint(value * 0x1p24F) == value * 0x1p24F;

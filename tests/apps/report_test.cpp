@@ -116,6 +116,23 @@ TEST_F(Report, GraphsOfOneNameAreNumbered) {
   EXPECT_THAT(outcome.err, HasSubstr("two graphs have the label 'a'"));
 }
 
+TEST_F(Report, WarnsBeforeItBecomesLarge) {
+  std::string nodes, from = "color";  // 2048 x 1024 pixels: 12.6 MB of halves a frame, of 4 frames and 2 graphs
+  for (int i = 0; i < 7; ++i) {
+    const std::string name = "double" + std::to_string(i);
+    nodes += (i > 0 ? ", " : "") + ("\"" + name) + R"(": {"pass": "scale", "in": {"image": ")" + from +
+             R"("}, "params": {"to": "double"}})";
+    from = name + ".image";
+  }
+  write_file("large.json",
+             R"({"quell": 1, "inputs": {"color": "color"}, "nodes": {)" + nodes + R"(}, "outputs": {"color": ")" + from + "\"}}");
+  const Outcome outcome = report({text("large.json"), text("large.json"), "--inner", "none", "--reference", "reference"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("MB, which browsers are slow to open; --every N keeps"));
+  const Outcome smaller = report({text("large.json"), text("large.json"), "--inner", "none", "--every", "2"});
+  EXPECT_THAT(smaller.err, ::testing::Not(HasSubstr("browsers are slow")));
+}
+
 TEST_F(Report, ReplacesReportsAndNothingElse) {
   ASSERT_EQ(report({}).code, 0);
   EXPECT_EQ(report({}).code, 0);
