@@ -38,8 +38,8 @@ function addTimes(svg: SVGSVGElement, graph: Graph) {
 
 export function showDrawings(report: Report) {
   for (const graph of report.graphs) {
-    const place = make("div", { class: "scroll drawing", tabindex: "0", role: "region", "aria-label": `drawing of ${graph.label}` });
-    const fit = make("button", { type: "button", "aria-pressed": "false" }, "Fit to the width");
+    const place = make("div", { class: "scroll drawing fit", tabindex: "0", role: "region", "aria-label": `drawing of ${graph.label}` });
+    const fit = make("button", { type: "button", "aria-pressed": "true" }, "Fit to the width");
     fit.addEventListener("click", () => fit.setAttribute("aria-pressed", String(place.classList.toggle("fit"))));
     const head = make("div", { class: "row" }, make("h3", {}, graph.label), fit);
     find("drawings-body").append(head, ...(graph.doc ? [make("p", {}, graph.doc)] : []), place);
