@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "quell/runtime/fused_runner.h"
 #include "quell/runtime/node_runner.h"
 #include "quell/runtime/plan_state.h"
 
@@ -16,7 +18,7 @@ struct FrameInputs {
   std::vector<Item> ahead;  ///< of Wiring::ahead; nothing where there is no such frame
 };
 
-/// Keeps its tables from frame to frame. The steps of a frame are fetched, run and published, each once, after those they need;
+/// Keeps its tables from frame to frame. The steps of a frame, positions in Plan::turns, are fetched, run and published, each once, after those they need;
 /// who does that in what order is the caller's affair. Only run() takes long, and needs no lock.
 class Lane {
  public:
@@ -41,9 +43,10 @@ class Lane {
 
   /// The first failed step in the plan's order; -1 when none failed.
   int failed_step() const;
-  const std::string& error() const { return errors_[static_cast<std::size_t>(failed_step())]; }
-  const std::string& name(int step) const;
-  const std::vector<double>& node_seconds() const { return seconds_; }
+  const std::string& error() const { return failures_[static_cast<std::size_t>(failed_step())].error; }
+  /// The node that failed there.
+  const std::string& failed_node() const { return name(failures_[static_cast<std::size_t>(failed_step())].node); }
+  const std::vector<double>& node_seconds() const { return seconds_; }  ///< by position in Plan::nodes
   /// Of Wiring::results, when all steps are through.
   const Item& result(std::size_t index) const { return values_[static_cast<std::size_t>(state_.wiring.results[index].second)]; }
   /// Lets go of what lies ahead, when all steps are through.
@@ -55,19 +58,27 @@ class Lane {
   Item take(int value);
   Item fetch_item(const Fetch& fetch, const std::vector<int>& resets);
   void note_reset(int value, const Item& item);
-  void drop_inputs(int step);
+  void compute(int step);
+  void fail(int step, const std::string& error);
+  void drop_items(int step);
+  const std::string& name(int node) const;
 
   PlanState& state_;
   BufferPool& pool_;
   Trace* trace_;
-  std::vector<NodeRunner> runners_;
+  std::vector<std::variant<NodeRunner, FusedRunner>> runners_;
+  std::vector<std::string> labels_;  // of each step: names of its nodes
   std::int64_t frame_ = 0;
   std::vector<Item> values_;  // by Wiring's index
   std::vector<int> readers_;  // that have not fetched the value yet
   std::vector<Item> ahead_;
-  std::vector<PortItems> inputs_, outputs_;  // of each step
+  std::vector<PortItems> inputs_, outputs_;  // of each node
+  struct Failure {
+    int node = 0;
+    std::string error;
+  };
   std::vector<Outcome> outcomes_;
-  std::vector<std::string> errors_;
+  std::vector<Failure> failures_;
   std::vector<double> seconds_;
 };
 

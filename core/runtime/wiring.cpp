@@ -24,20 +24,25 @@ class Builder {
       lines_[plan_.histories[line].from] = static_cast<int>(line);
       wiring_.lines[at(value_of(plan_.histories[line].from))].push_back(static_cast<int>(line));
     }
-    for (std::size_t step = 0; step < plan_.nodes.size(); ++step) wire(static_cast<int>(step));
+    wiring_.steps.resize(plan_.turns.size());
+    for (std::size_t step = 0; step < plan_.turns.size(); ++step)
+      for (const int position : plan_.turns[step].nodes) wire(static_cast<int>(step), position);
   }
 
  private:
-  const Node& node(int step) const { return plan_.graph->nodes[at(plan_.nodes[at(step)].node)]; }
+  const Node& node(int position) const { return plan_.graph->nodes[at(plan_.nodes[at(position)].node)]; }
 
   void number_values() {
     for (std::size_t input = 0; input < plan_.inputs.size(); ++input) add_value({-1, static_cast<int>(input), 0}, -1);
-    for (std::size_t step = 0; step < plan_.nodes.size(); ++step) {
-      const PlannedNode& planned = plan_.nodes[step];
-      wiring_.steps.emplace_back().first_output = static_cast<int>(producers_.size());
+    std::vector<int> steps(plan_.nodes.size());
+    for (std::size_t step = 0; step < plan_.turns.size(); ++step)
+      for (const int position : plan_.turns[step].nodes) steps[at(position)] = static_cast<int>(step);
+    for (std::size_t position = 0; position < plan_.nodes.size(); ++position) {
+      const PlannedNode& planned = plan_.nodes[position];
+      wiring_.nodes.emplace_back().first_output = static_cast<int>(producers_.size());
       for (std::size_t port = 0; port < planned.outputs.size(); ++port)
         for (std::size_t item = 0; item < planned.outputs[port].size(); ++item)
-          add_value({planned.node, static_cast<int>(port), static_cast<int>(item)}, static_cast<int>(step));
+          add_value({planned.node, static_cast<int>(port), static_cast<int>(item)}, steps[position]);
     }
     wiring_.readers.resize(producers_.size());
     wiring_.lines.resize(producers_.size());
@@ -54,28 +59,28 @@ class Builder {
     return found == values_.end() ? -1 : found->second;
   }
 
-  void wire(int step) {
-    for (const std::vector<Edge>& port : node(step).inputs) {
-      std::vector<Fetch>& fetches = wiring_.steps[at(step)].fetches.emplace_back();
-      for (const Edge& edge : port) fetches.push_back(fetch(step, edge));
+  void wire(int step, int position) {
+    for (const std::vector<Edge>& port : node(position).inputs) {
+      std::vector<Fetch>& fetches = wiring_.nodes[at(position)].fetches.emplace_back();
+      for (const Edge& edge : port) fetches.push_back(fetch(step, position, edge));
     }
-    wire_resets(step);
+    wire_resets(step, position);
   }
 
-  void wire_resets(int step) {
-    WiredStep& wired = wiring_.steps[at(step)];
+  void wire_resets(int step, int position) {
+    WiredNode& wired = wiring_.nodes[at(position)];
     int longest = 0;
     for (const std::vector<Fetch>& port : wired.fetches)
       for (const Fetch& fetch : port) longest = std::max(longest, fetch.line >= 0 ? fetch.delay : 0);
     if (longest == 0) return;
-    for (const Endpoint& endpoint : node(step).resets) {
+    for (const Endpoint& endpoint : node(position).resets) {
       const int value = plan_.shape(endpoint).present ? value_of(endpoint) : -1;
       if (value < 0) continue;
       wired.resets.push_back(reset(value));
       const int producer = producers_[at(value)];
       if (producer < 0) continue;  // inputs are there when a frame begins
       need(step, producer);
-      wired.reset_waits.push_back({producer, longest});
+      wiring_.steps[at(step)].reset_waits.push_back({producer, longest});
       wiring_.steps[at(producer)].resets_for.push_back({step, longest});
     }
   }
@@ -87,13 +92,15 @@ class Builder {
     return index;
   }
 
-  Fetch fetch(int step, const Edge& edge) {
+  Fetch fetch(int step, int position, const Edge& edge) {
     Fetch fetch;
     fetch.planned.present = false;
     if (!edge.from.is_nothing()) fetch.planned = plan_.shape(edge.from);
     if (edge.delay == 0) {
-      fetch.value = value_of(edge.from);
-      read(step, fetch.value);
+      const int value = value_of(edge.from);
+      if (value >= 0 && producers_[at(value)] == step) return fetch;  // whoever runs fused nodes knows where it is
+      fetch.value = value;
+      read(step, value);
       return fetch;
     }
     if (const auto line = lines_.find(edge.from); edge.delay > 0 && line != lines_.end()) {
@@ -106,7 +113,7 @@ class Builder {
       fetch.initial = value_of(edge.initial.endpoint);
       read(step, fetch.initial);
     }
-    if (edge.initial.kind == Initial::Kind::constant) fetch.constant = constant(step, edge);
+    if (edge.initial.kind == Initial::Kind::constant) fetch.constant = constant(position, edge);
     return fetch;
   }
 
@@ -139,11 +146,11 @@ class Builder {
     return index;
   }
 
-  int constant(int step, const Edge& edge) {
+  int constant(int position, const Edge& edge) {
     Shape shape = edge.from.is_nothing() ? Shape{} : plan_.shape(edge.from);
     shape.type = plan_.graph->type(edge.from);
     // The source of a pruned edge has no size; its reader's other images tell it.
-    if (!shape.present) shape.size = image_size(node(step));
+    if (!shape.present) shape.size = image_size(node(position));
     wiring_.constants.push_back({shape, edge.initial.constant});
     return static_cast<int>(wiring_.constants.size()) - 1;
   }
@@ -164,7 +171,7 @@ class Builder {
   const Plan& plan_;
   Wiring& wiring_;
   std::map<Endpoint, int> values_, lines_;
-  std::vector<int> producers_;  // of each value; -1 for graph inputs
+  std::vector<int> producers_;  // step of each value; -1 for graph inputs
 };
 
 }  // namespace
