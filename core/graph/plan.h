@@ -32,18 +32,18 @@ struct PlannedWindow {
   bool whole = false;  ///< somebody else needs it whole, so that its rows are copied, too
 };
 
-/// What runs at once: a node, or several that are fused. Those compute some rows each, in turns, so that what passes between them
+/// What runs at once: a node, or several that are fused. These compute some rows each, in turns, so that what passes between them
 /// is still in the cache when it is read, and need not be written to memory where nobody else reads it.
 struct PlannedTurn {
   std::vector<int> nodes;  ///< positions in Plan::nodes, ascending
-  // Of several nodes:
+  // Of fused nodes:
   std::vector<int> ahead;              ///< of each: rows that it is ahead of the last nodes, which read around a pixel
   std::vector<PlannedWindow> windows;  ///< ascending; what is missing here is computed in place, each row once
   int rows = 0;                        ///< that a node computes before the next one has its turn
   int band = 0;                        ///< that a thread computes by itself, from the top; what lies around it is computed twice
   std::size_t window_bytes = 0;        ///< of all windows of a thread
 
-  bool is_fused() const { return nodes.size() > 1; }
+  bool is_fused() const { return rows > 0; }
 };
 
 /// What earlier (or later) frames of an endpoint are kept.

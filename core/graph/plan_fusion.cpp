@@ -11,9 +11,9 @@ namespace {
 
 // Of the rows that pass between nodes; about half of what today's processors have as second-level cache for each thread.
 constexpr std::size_t kCachedBytes = std::size_t{768} << 10;
-constexpr int kMostRows = 32;
-constexpr int kMostRadius = 2;   // of a reader: what lies around a band is computed twice
-constexpr int kSmallestBand = 64;  // rows, where something is
+constexpr int kMostRows = 8;
+constexpr int kMostRadius = 2;  // of a reader: what lies around a band is computed twice
+constexpr int kBandRows = 32;     // for each row by which a node is ahead: so little of what it does is done twice
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -178,7 +178,7 @@ class Fuser {
   PlannedTurn make_turn(const Group& group) {
     PlannedTurn turn;
     turn.nodes = group.nodes;
-    if (!turn.is_fused()) return turn;
+    if (turn.nodes.size() == 1) return turn;
     turn.ahead.assign(turn.nodes.size(), 0);
     for (std::size_t member = turn.nodes.size(); member-- > 0;)
       for_each_value(turn.nodes[member], [&](const Endpoint& endpoint, const Shape&) {
@@ -201,8 +201,8 @@ class Fuser {
       });
     turn.rows = static_cast<int>(std::clamp<std::size_t>(kCachedBytes / row_bytes, 1, kMostRows));
     turn.rows = std::min(turn.rows, height);
-    const bool is_computed_twice = std::ranges::max(turn.ahead) > 0;
-    turn.band = is_computed_twice ? (std::min(kSmallestBand, height) + turn.rows - 1) / turn.rows * turn.rows : turn.rows;
+    const int band = std::max(turn.rows, std::min(kBandRows * std::ranges::max(turn.ahead), height));
+    turn.band = (band + turn.rows - 1) / turn.rows * turn.rows;
   }
 
   void add_windows(PlannedTurn& turn, std::size_t member) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <limits>
 #include <mutex>
 #include <utility>
 
@@ -26,7 +25,10 @@ class RowsHost {
   RowsHost& operator=(const RowsHost&) = delete;
 
   void begin(const quell_host& host, std::uint32_t slot) { host_ = &host, slot_ = slot; }
-  void set_rows(int begin, int end, int height) { begin_ = begin, end_ = end, height_ = height; }
+  void set_rows(int begin, int end, int height) {
+    begin_ = begin, end_ = end, height_ = height;
+    error_.clear();
+  }
   const quell_host& raw() const { return raw_; }
   std::string take_error() { return std::exchange(error_, {}); }
 
@@ -86,6 +88,7 @@ struct Member {
   int position = 0, ahead = 0;
   std::vector<int> in_place_of;
   std::vector<std::size_t> values;
+  std::vector<std::size_t> needs;  // members
 };
 
 // Rows [first, made) of a value. Those before the first one are forgotten.
@@ -100,7 +103,8 @@ struct Worker {
     std::vector<RawPort> raw_inputs, raw_outputs;
     std::vector<quell_port> inputs, outputs;
     quell_exec exec{};
-    int made = 0;  // rows before this one are computed
+    int made = 0;          // rows before this one are computed
+    bool is_dead = false;  // it is lost, or has failed in this band
     double seconds = 0;
   };
   RowsHost host;
@@ -109,15 +113,15 @@ struct Worker {
   std::int64_t serial = -1;     // of the run that its tables are for
 };
 
+// Of a node: that of the topmost band where it failed.
 struct Failure {
-  std::size_t member = std::numeric_limits<std::size_t>::max();
-  std::int64_t band = 0;
+  std::int64_t band = -1;
   std::string reason;
 };
 
 }  // namespace
 
-struct FusedRunner::Tables {
+struct FusedRunner::State {
   const PlannedTurn& turn;
   const HostServices& services;
   BufferPool& pool;
@@ -128,17 +132,15 @@ struct FusedRunner::Tables {
   std::vector<Value> values;
   std::vector<std::unique_ptr<Worker>> workers;  // by slot
   std::vector<void*> slot_pointers;
-  int failed_node = -1;
 
   // Of the run at hand.
   std::int64_t serial = 0, frame = 0;
-  std::vector<PortItems>* in = nullptr;
-  std::vector<PortItems>* out = nullptr;
+  Tables* tables = nullptr;
   std::byte* window_memory = nullptr;
   std::mutex mutex;
-  Failure failure;
+  std::vector<Failure> failures;  // of each member
 
-  Tables(std::string name, const Plan& plan, const PlannedTurn& planned, const HostServices& host_services, BufferPool& buffers)
+  State(std::string name, const Plan& plan, const PlannedTurn& planned, const HostServices& host_services, BufferPool& buffers)
       : turn(planned), services(host_services), pool(buffers), host(host_services, std::move(name)) {
     for (std::size_t member = 0; member < turn.nodes.size(); ++member) add_member(plan, member);
     for (std::size_t member = 0; member < members.size(); ++member) link(plan, member);
@@ -177,8 +179,10 @@ struct FusedRunner::Tables {
         const Edge& edge = node.inputs[port][item];
         for (Value& value : values)
           if (edge.delay == 0 && plan.nodes[at(members[value.member].position)].node == edge.from.node &&
-              value.port == at(edge.from.port) && value.item == at(edge.from.item))
+              value.port == at(edge.from.port) && value.item == at(edge.from.item)) {
             value.readers.push_back({index, port, item, planned.radius[port]});
+            members[index].needs.push_back(value.member);
+          }
       }
   }
 
@@ -197,10 +201,10 @@ struct FusedRunner::Tables {
 
   // ---- once a frame ----
 
-  void compute(std::int64_t number, std::vector<PortItems>& inputs, std::vector<PortItems>& outputs,
-               std::vector<double>& seconds) {
+  void compute(std::int64_t number, Tables& given) {
     const auto start = Clock::now();
-    ++serial, frame = number, in = &inputs, out = &outputs, failure = {}, failed_node = -1;
+    ++serial, frame = number, tables = &given;
+    failures.assign(members.size(), {});
     place_outputs();
     Buffer windows, scratch;
     if (window_bytes > 0) windows = pool.acquire(window_bytes * workers.size());
@@ -211,42 +215,56 @@ struct FusedRunner::Tables {
 
     host.begin(frame);
     const quell_chunk_fn run_bands = [](void* self, std::int64_t, std::int64_t begin, std::int64_t end, std::uint32_t slot) {
-      for (std::int64_t band = begin; band < end; ++band) static_cast<Tables*>(self)->run_band(band, slot);
+      for (std::int64_t band = begin; band < end; ++band) static_cast<State*>(self)->run_band(band, slot);
       return QUELL_OK;
     };
     host.raw().parallel_for(&host.raw(), 0, (height + turn.band - 1) / turn.band, 1, run_bands, this);
     if (host.was_cancelled()) throw Cancelled();
-    if (failure.member < members.size()) {
-      const Member& failed = members[failure.member];
-      failed_node = failed.position;
-      throw Error(Fault::frame, failed.name, failure.reason.empty() ? "the pass failed without giving a reason" : failure.reason);
-    }
-    tell_seconds(std::chrono::duration<double>(Clock::now() - start).count(), seconds);
+    tell_outcomes();
+    tell_seconds(std::chrono::duration<double>(Clock::now() - start).count());
   }
+
+  Outcome& outcome(std::size_t member) const { return tables->outcomes[at(members[member].position)]; }
+  bool is_lost(std::size_t member) const { return outcome(member) == Outcome::lost; }
+  PortItems& inputs(std::size_t member) const { return tables->inputs[at(members[member].position)]; }
+  PortItems& outputs(std::size_t member) const { return tables->outputs[at(members[member].position)]; }
 
   void place_outputs() const {
-    for (const Member& member : members) {
-      PortItems& ports = (*out)[at(member.position)];
-      ports.resize(member.pass->desc().output_count);
-    }
+    for (std::size_t member = 0; member < members.size(); ++member) outputs(member).resize(members[member].pass->desc().output_count);
     for (const Value& value : values) {
-      const Member& member = members[value.member];
-      std::vector<Item>& items = (*out)[at(member.position)][value.port];
+      std::vector<Item>& items = outputs(value.member)[value.port];
       if (items.size() <= value.item) items.resize(value.item + 1);
-      const PortItems& inputs = (*in)[at(member.position)];
-      if (value.whole)
-        items[value.item] = place_item(value.shape, item_in_place_of(inputs, member.in_place_of[value.port], value.item), pool);
+      const Image* replaced = item_in_place_of(inputs(value.member), members[value.member].in_place_of[value.port], value.item);
+      if (value.whole && !is_lost(value.member)) items[value.item] = place_item(value.shape, replaced, pool);
     }
   }
 
-  void tell_seconds(double all, std::vector<double>& seconds) {
+  void tell_outcomes() const {
+    for (std::size_t member = 0; member < members.size(); ++member) {
+      if (is_lost(member)) continue;
+      const auto is_gone = [&](std::size_t needed) { return outcome(needed) != Outcome::done; };
+      outcome(member) = Outcome::done;
+      if (failures[member].band >= 0) {
+        outcome(member) = Outcome::failed;
+        const std::string& reason = failures[member].reason;
+        tables->errors[at(members[member].position)] =
+            members[member].name + ": " + (reason.empty() ? "the pass failed without giving a reason" : reason);
+      } else if (std::ranges::any_of(members[member].needs, is_gone)) {
+        outcome(member) = Outcome::lost;
+      }
+      if (outcome(member) != Outcome::done)
+        for (std::vector<Item>& port : outputs(member)) std::ranges::fill(port, Item());
+    }
+  }
+
+  void tell_seconds(double all) {
     double sum = 0;
     for (const std::unique_ptr<Worker>& worker : workers)
       for (const Worker::Node& node : worker->nodes) sum += node.seconds;
     for (std::size_t member = 0; member < members.size(); ++member) {
       double own = 0;
       for (const std::unique_ptr<Worker>& worker : workers) own += std::exchange(worker->nodes[member].seconds, 0);
-      seconds[at(members[member].position)] = sum > 0 ? all * own / sum : 0;
+      tables->seconds[at(members[member].position)] = sum > 0 ? all * own / sum : 0;
     }
   }
 
@@ -264,12 +282,12 @@ struct FusedRunner::Tables {
     }
     for (std::size_t member = 0; member < members.size(); ++member) set_ports(worker, member);
     for (std::size_t value = 0; value < values.size(); ++value)
-      if (values[value].window_rows == 0) show(worker, value, item_of(values[value]).image()->raw());
+      if (values[value].window_rows == 0 && !is_lost(values[value].member)) show(worker, value, item_of(values[value]).image()->raw());
     for (std::size_t member = 0; member < members.size(); ++member) set_exec(worker.nodes[member]);
     return worker;
   }
 
-  Item& item_of(const Value& value) const { return (*out)[at(members[value.member].position)][value.port][value.item]; }
+  Item& item_of(const Value& value) const { return outputs(value.member)[value.port][value.item]; }
 
   static std::size_t bytes_of_window(const Value& value) {
     return Image::bytes_needed(value.shape.type, {value.shape.size.width, value.window_rows});
@@ -277,10 +295,8 @@ struct FusedRunner::Tables {
 
   void set_ports(Worker& worker, std::size_t member) const {
     Worker::Node& node = worker.nodes[member];
-    const PortItems& inputs = (*in)[at(members[member].position)];
-    const PortItems& outputs = (*out)[at(members[member].position)];
-    for (std::size_t port = 0; port < node.raw_inputs.size(); ++port) node.raw_inputs[port].set(inputs[port]);
-    for (std::size_t port = 0; port < node.raw_outputs.size(); ++port) node.raw_outputs[port].set(outputs[port]);
+    for (std::size_t port = 0; port < node.raw_inputs.size(); ++port) node.raw_inputs[port].set(inputs(member)[port]);
+    for (std::size_t port = 0; port < node.raw_outputs.size(); ++port) node.raw_outputs[port].set(outputs(member)[port]);
     for (std::size_t port = 0; port < node.inputs.size(); ++port) node.inputs[port] = node.raw_inputs[port].raw();
     for (std::size_t port = 0; port < node.outputs.size(); ++port) node.outputs[port] = node.raw_outputs[port].raw();
   }
@@ -308,19 +324,25 @@ struct FusedRunner::Tables {
   void run_band(std::int64_t band, std::uint32_t slot) {
     Worker& worker = worker_for(slot);
     const int begin = static_cast<int>(band) * turn.band, end = std::min(begin + turn.band, height);
-    for (std::size_t member = 0; member < members.size(); ++member)
+    for (std::size_t member = 0; member < members.size(); ++member) {
       worker.nodes[member].made = std::max(begin - members[member].ahead, 0);
+      worker.nodes[member].is_dead = is_lost(member);
+    }
     for (std::size_t value = 0; value < values.size(); ++value)
       worker.windows[value].first = worker.windows[value].made = worker.nodes[values[value].member].made;
     for (int row = begin; row < end; row += turn.rows)
       for (std::size_t member = 0; member < members.size(); ++member) {
+        Worker::Node& node = worker.nodes[member];
+        const auto is_dead = [&](std::size_t needed) { return worker.nodes[needed].is_dead; };
+        node.is_dead = node.is_dead || std::ranges::any_of(members[member].needs, is_dead);
+        if (node.is_dead) continue;
         const int to = std::min(std::min(row + turn.rows, end) + members[member].ahead, height);
-        if (!run_rows(worker, member, to, band, begin, end)) return;
+        if (!run_rows(worker, member, to, begin, end)) fail(worker, member, band);
       }
   }
 
-  // Computes a node's rows up to `to`. False when it failed.
-  bool run_rows(Worker& worker, std::size_t member, int to, std::int64_t band, int band_begin, int band_end) {
+  // Computes a node's rows up to `to`. False when it fails.
+  bool run_rows(Worker& worker, std::size_t member, int to, int band_begin, int band_end) {
     Worker::Node& node = worker.nodes[member];
     const int from = node.made;
     if (from >= to) return true;
@@ -329,23 +351,22 @@ struct FusedRunner::Tables {
     const auto start = Clock::now();
     worker.host.set_rows(from, to, height);
     const quell_status status = members[member].pass->process(worker.host.raw(), node.exec);
-    if (status != QUELL_OK) {
-      fail(member, band, worker.host.take_error());
-      return false;
-    }
+    node.seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    if (status != QUELL_OK) return false;
     node.made = to;
     for (const std::size_t value : members[member].values) {
       worker.windows[value].made = to;
       if (values[value].window_rows > 0 && values[value].whole)
         copy_rows(worker.windows[value], values[value], std::max(from, band_begin), std::min(to, band_end));
     }
-    node.seconds += std::chrono::duration<double>(Clock::now() - start).count();
     return true;
   }
 
-  void fail(std::size_t member, std::int64_t band, std::string reason) {
+  void fail(Worker& worker, std::size_t member, std::int64_t band) {
+    worker.nodes[member].is_dead = true;
+    std::string reason = worker.host.take_error();
     const std::scoped_lock lock(mutex);
-    if (member < failure.member || (member == failure.member && band < failure.band)) failure = {member, band, std::move(reason)};
+    if (Failure& known = failures[member]; known.band < 0 || band < known.band) known = {band, std::move(reason)};
   }
 
   // Rows that nobody needs any more make room for those that come next.
@@ -353,7 +374,8 @@ struct FusedRunner::Tables {
     const Value& value = values[index];
     Window& window = worker.windows[index];
     int first = window.made;
-    for (const Reader& reader : value.readers) first = std::min(first, worker.nodes[reader.member].made - reader.radius);
+    for (const Reader& reader : value.readers)
+      if (const Worker::Node& node = worker.nodes[reader.member]; !node.is_dead) first = std::min(first, node.made - reader.radius);
     first = std::max(first, window.first);
     const auto row = static_cast<std::size_t>(Image::row_stride(value.shape.size.width)) * sizeof(float);
     const std::size_t plane = row * at(value.window_rows);
@@ -391,15 +413,10 @@ struct FusedRunner::Tables {
 
 FusedRunner::FusedRunner(std::string name, const Plan& plan, const PlannedTurn& turn, const HostServices& services,
                          BufferPool& pool)
-    : tables_(std::make_unique<Tables>(std::move(name), plan, turn, services, pool)) {}
+    : state_(std::make_unique<State>(std::move(name), plan, turn, services, pool)) {}
 FusedRunner::~FusedRunner() = default;
 FusedRunner::FusedRunner(FusedRunner&&) noexcept = default;
 
-void FusedRunner::run(std::int64_t frame, std::vector<PortItems>& inputs, std::vector<PortItems>& outputs,
-                      std::vector<double>& seconds) {
-  tables_->compute(frame, inputs, outputs, seconds);
-}
-
-int FusedRunner::failed_node() const { return tables_->failed_node; }
+void FusedRunner::run(std::int64_t frame, Tables& tables) { state_->compute(frame, tables); }
 
 }  // namespace quell

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "quell/graph/plan.h"
+#include "quell/runtime/failure.h"
 #include "quell/runtime/host.h"
 #include "quell/runtime/raw_port.h"
 
@@ -20,16 +21,21 @@ class FusedRunner {
   ~FusedRunner();
   FusedRunner(FusedRunner&&) noexcept;
 
-  /// As NodeRunner::run, of all nodes at once. `inputs`, `outputs` and `seconds` are by position in Plan::nodes; items that fused
-  /// nodes yield are not among the inputs. Outputs that are Plan::inner stay empty. The time that it took is divided among
-  /// `seconds` as the threads spent it. When several nodes fail, the first one in the plan's order is told of.
-  void run(std::int64_t frame, std::vector<PortItems>& inputs, std::vector<PortItems>& outputs, std::vector<double>& seconds);
-  /// Position of the node that failed last; -1 when it was none of them.
-  int failed_node() const;
+  /// What goes into each node and comes out of it, by position in Plan::nodes.
+  struct Tables {
+    std::vector<PortItems> inputs, outputs;
+    std::vector<Outcome> outcomes;
+    std::vector<std::string> errors;
+    std::vector<double> seconds;
+  };
+  /// Computes the outputs of all nodes but those that are lost, as NodeRunner::run does. Items that fused nodes yield are not
+  /// among the inputs, and outputs that are Plan::inner stay empty. A node that fails, or is lost with that, harms no other. The
+  /// time that all took is divided among them as the threads spent it. Throws Cancelled, and what the pool throws.
+  void run(std::int64_t frame, Tables& tables);
 
  private:
-  struct Tables;
-  std::unique_ptr<Tables> tables_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace quell

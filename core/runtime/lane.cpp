@@ -20,17 +20,12 @@ bool fits(const Item& item, const Shape& planned) {
 }  // namespace
 
 Lane::Lane(PlanState& state, const HostServices& services, BufferPool& pool, Trace* trace)
-    : state_(state),
-      pool_(pool),
-      trace_(trace),
-      values_(state.wiring.readers.size()),
-      inputs_(state.plan.nodes.size()),
-      outputs_(state.plan.nodes.size()),
-      outcomes_(state.plan.turns.size()),
-      failures_(state.plan.turns.size()),
-      seconds_(state.plan.nodes.size()) {
-  for (std::size_t node = 0; node < state.plan.nodes.size(); ++node)
-    for (const std::vector<Fetch>& port : state.wiring.nodes[node].fetches) inputs_[node].emplace_back(port.size());
+    : state_(state), pool_(pool), trace_(trace), values_(state.wiring.readers.size()) {
+  const std::size_t nodes = state.plan.nodes.size();
+  tables_.inputs.resize(nodes), tables_.outputs.resize(nodes);
+  tables_.outcomes.resize(nodes), tables_.errors.resize(nodes), tables_.seconds.resize(nodes);
+  for (std::size_t node = 0; node < nodes; ++node)
+    for (const std::vector<Fetch>& port : state.wiring.nodes[node].fetches) tables_.inputs[node].emplace_back(port.size());
   for (const PlannedTurn& turn : state.plan.turns) {
     std::string& label = labels_.emplace_back();
     for (const int node : turn.nodes) label += (label.empty() ? "" : " + ") + name(node);
@@ -50,8 +45,8 @@ void Lane::begin(std::int64_t frame, FrameInputs inputs) {
   frame_ = frame;
   readers_ = state_.wiring.readers;
   ahead_ = std::move(inputs.ahead);
-  std::ranges::fill(outcomes_, Outcome::pending);
-  std::ranges::fill(seconds_, 0.0);
+  std::ranges::fill(tables_.outcomes, Outcome::pending);
+  std::ranges::fill(tables_.seconds, 0.0);
   for (std::size_t value = 0; value < inputs.items.size(); ++value) {
     for (const int line : state_.wiring.lines[value]) state_.history.add(line, frame, inputs.items[value]);
     note_reset(static_cast<int>(value), inputs.items[value]);
@@ -59,20 +54,26 @@ void Lane::begin(std::int64_t frame, FrameInputs inputs) {
   }
 }
 
-bool Lane::is_lost(int step) const {
-  return std::ranges::any_of(state_.wiring.steps[at(step)].needs, [&](int needed) {
-    return outcomes_[at(needed)] == Outcome::failed || outcomes_[at(needed)] == Outcome::lost;
-  });
+bool Lane::is_lost(int step) {
+  const auto is_gone = [&](int node) { return outcome(node) == Outcome::failed || outcome(node) == Outcome::lost; };
+  for (const int node : nodes_of(step))
+    if (std::ranges::any_of(state_.wiring.nodes[at(node)].needs, is_gone)) outcome(node) = Outcome::lost;
+  return std::ranges::all_of(nodes_of(step), is_gone);
 }
 
 void Lane::skip(int step) {
-  outcomes_[at(step)] = Outcome::lost;
-  for (const int node : state_.plan.turns[at(step)].nodes)
-    for (const std::vector<Fetch>& port : state_.wiring.nodes[at(node)].fetches)
-      for (const Fetch& fetch : port) {
-        take(fetch.value);
-        take(fetch.initial);
-      }
+  for (const int node : nodes_of(step)) {
+    outcome(node) = Outcome::lost;
+    take_all(node);
+  }
+}
+
+void Lane::take_all(int node) {
+  for (const std::vector<Fetch>& port : state_.wiring.nodes[at(node)].fetches)
+    for (const Fetch& fetch : port) {
+      take(fetch.value);
+      take(fetch.initial);
+    }
 }
 
 // The last reader gets the frame's own hold on the value, and may then be its only holder.
@@ -94,11 +95,16 @@ Item Lane::fetch_item(const Fetch& fetch, const std::vector<int>& resets) {
 }
 
 void Lane::fetch(int step) {
-  for (const int node : state_.plan.turns[at(step)].nodes) {
+  for (const int node : nodes_of(step)) {
+    if (outcome(node) == Outcome::lost) {
+      take_all(node);
+      continue;
+    }
     const std::vector<int>& resets = state_.wiring.nodes[at(node)].resets;
     const std::vector<std::vector<Fetch>>& fetches = state_.wiring.nodes[at(node)].fetches;
     for (std::size_t port = 0; port < fetches.size(); ++port)
-      for (std::size_t i = 0; i < fetches[port].size(); ++i) inputs_[at(node)][port][i] = fetch_item(fetches[port][i], resets);
+      for (std::size_t i = 0; i < fetches[port].size(); ++i)
+        tables_.inputs[at(node)][port][i] = fetch_item(fetches[port][i], resets);
   }
 }
 
@@ -106,59 +112,58 @@ void Lane::run(int step) {
   const auto start = Trace::Clock::now();
   try {
     compute(step);
-    outcomes_[at(step)] = Outcome::done;
   } catch (const Cancelled&) {
-    drop_items(step);
+    for (const int node : nodes_of(step)) drop_inputs(node), drop_outputs(node);
     throw;
   } catch (const std::bad_alloc&) {
     fail(step, labels_[at(step)] + ": " + out_of_memory(pool_));
   } catch (...) { fail(step, what_failed(pool_)); }
-  const auto end = Trace::Clock::now();
-  if (const std::vector<int>& nodes = state_.plan.turns[at(step)].nodes; nodes.size() == 1)
-    seconds_[at(nodes.front())] = std::chrono::duration<double>(end - start).count();
-  if (outcomes_[at(step)] == Outcome::failed) drop_items(step);
+  for (const int node : nodes_of(step)) {
+    drop_inputs(node);
+    if (outcome(node) != Outcome::done) drop_outputs(node);
+  }
   if (!trace_) return;
-  trace_->slice(Trace::Kind::node, labels_[at(step)], frame_, start, end);
+  trace_->slice(Trace::Kind::node, labels_[at(step)], frame_, start, Trace::Clock::now());
   trace_->memory(pool_.usage());
 }
 
 void Lane::compute(int step) {
-  const std::vector<int>& nodes = state_.plan.turns[at(step)].nodes;
-  if (auto* fused = std::get_if<FusedRunner>(&runners_[at(step)])) {
-    fused->run(frame_, inputs_, outputs_, seconds_);
-    for (const int node : nodes)
-      for (std::vector<Item>& port : inputs_[at(node)]) std::ranges::fill(port, Item());
-  } else {
-    std::get<NodeRunner>(runners_[at(step)]).run(frame_, inputs_[at(nodes.front())], outputs_[at(nodes.front())]);
-  }
+  if (auto* fused = std::get_if<FusedRunner>(&runners_[at(step)])) return fused->run(frame_, tables_);
+  const std::size_t node = at(nodes_of(step).front());
+  const auto start = Trace::Clock::now();
+  std::get<NodeRunner>(runners_[at(step)]).run(frame_, tables_.inputs[node], tables_.outputs[node]);
+  tables_.seconds[node] = std::chrono::duration<double>(Trace::Clock::now() - start).count();
+  tables_.outcomes[node] = Outcome::done;
 }
 
 void Lane::fail(int step, const std::string& error) {
-  const auto* fused = std::get_if<FusedRunner>(&runners_[at(step)]);
-  const int failed = fused ? fused->failed_node() : -1;
-  const int node = failed >= 0 ? failed : state_.plan.turns[at(step)].nodes.front();
-  failures_[at(step)] = {node, error};
-  outcomes_[at(step)] = Outcome::failed;
+  for (const int node : nodes_of(step)) {
+    if (outcome(node) == Outcome::lost) continue;
+    outcome(node) = Outcome::failed;
+    tables_.errors[at(node)] = error;
+  }
 }
 
-void Lane::drop_items(int step) {
-  for (const int node : state_.plan.turns[at(step)].nodes)
-    for (PortItems* items : {&inputs_[at(node)], &outputs_[at(node)]})
-      for (std::vector<Item>& port : *items) std::ranges::fill(port, Item());
+void Lane::drop_inputs(int node) {
+  for (std::vector<Item>& port : tables_.inputs[at(node)]) std::ranges::fill(port, Item());
+}
+void Lane::drop_outputs(int node) {
+  for (std::vector<Item>& port : tables_.outputs[at(node)]) std::ranges::fill(port, Item());
 }
 
 void Lane::publish(int step) {
-  if (outcomes_[at(step)] != Outcome::done) return;
-  for (const int node : state_.plan.turns[at(step)].nodes) {
+  for (const int node : nodes_of(step)) {
+    if (outcome(node) != Outcome::done) continue;
     int value = state_.wiring.nodes[at(node)].first_output;
-    for (std::size_t port = 0; port < outputs_[at(node)].size(); ++port)
+    for (std::size_t port = 0; port < state_.plan.nodes[at(node)].outputs.size(); ++port) {
+      std::vector<Item>& items = tables_.outputs[at(node)][port];
       for (std::size_t i = 0; i < state_.plan.nodes[at(node)].outputs[port].size(); ++i, ++value) {
-        if (i >= outputs_[at(node)][port].size()) continue;
-        Item item = std::exchange(outputs_[at(node)][port][i], {});
+        Item item = i < items.size() ? std::exchange(items[i], {}) : Item();
         for (const int line : state_.wiring.lines[at(value)]) state_.history.add(line, frame_, item);
         note_reset(value, item);
         if (readers_[at(value)] > 0) values_[at(value)] = std::move(item);
       }
+    }
   }
 }
 
@@ -169,9 +174,9 @@ void Lane::note_reset(int value, const Item& item) {
     if (state_.wiring.resets[reset].value == value) state_.history.reset(static_cast<int>(reset), frame_);
 }
 
-int Lane::failed_step() const {
-  const auto failed = std::ranges::find(outcomes_, Outcome::failed);
-  return failed == outcomes_.end() ? -1 : static_cast<int>(failed - outcomes_.begin());
+int Lane::failed_node() const {
+  const auto failed = std::ranges::find(tables_.outcomes, Outcome::failed);
+  return failed == tables_.outcomes.end() ? -1 : static_cast<int>(failed - tables_.outcomes.begin());
 }
 
 const std::string& Lane::name(int node) const { return state_.plan.graph->nodes[at(state_.plan.nodes[at(node)].node)].name; }
@@ -181,7 +186,7 @@ void Lane::drop_ahead() { std::ranges::fill(ahead_, Item()); }
 void Lane::clear() {
   std::ranges::fill(values_, Item());
   drop_ahead();
-  for (std::size_t step = 0; step < outcomes_.size(); ++step) drop_items(static_cast<int>(step));
+  for (int node = 0; node < static_cast<int>(tables_.inputs.size()); ++node) drop_inputs(node), drop_outputs(node);
 }
 
 }  // namespace quell

@@ -22,31 +22,28 @@ struct FrameInputs {
 /// who does that in what order is the caller's affair. Only run() takes long, and needs no lock.
 class Lane {
  public:
-  enum class Outcome : std::uint8_t { pending, done, failed, lost };  ///< lost: a step that it needs failed, or was lost
-
   Lane(PlanState& state, const HostServices& services, BufferPool& pool, Trace* trace);
 
   /// Forgets the frame before.
   void begin(std::int64_t frame, FrameInputs inputs);
   std::int64_t frame() const { return frame_; }
 
-  /// Whether a step that this one needs has failed: then it is skipped instead.
-  bool is_lost(int step) const;
+  /// Whether each node of the step needs one that has failed: then it is skipped instead.
+  bool is_lost(int step);
   void skip(int step);
 
   /// Takes the step's inputs out of the frame's values and the history.
   void fetch(int step);
-  /// Computes. Throws Cancelled; every other exception is kept and makes the step a failed one.
+  /// Computes. Throws Cancelled; every other exception is kept and makes its nodes failed ones.
   void run(int step);
   /// Makes its results known to the frame and the history.
   void publish(int step);
 
-  /// The first failed step in the plan's order; -1 when none failed.
-  int failed_step() const;
-  const std::string& error() const { return failures_[static_cast<std::size_t>(failed_step())].error; }
-  /// The node that failed there.
-  const std::string& failed_node() const { return name(failures_[static_cast<std::size_t>(failed_step())].node); }
-  const std::vector<double>& node_seconds() const { return seconds_; }  ///< by position in Plan::nodes
+  /// The first failed node in the plan's order, a position in Plan::nodes; -1 when none failed.
+  int failed_node() const;
+  const std::string& error() const { return tables_.errors[static_cast<std::size_t>(failed_node())]; }
+  const std::string& name(int node) const;
+  const std::vector<double>& node_seconds() const { return tables_.seconds; }  ///< by position in Plan::nodes
   /// Of Wiring::results, when all steps are through.
   const Item& result(std::size_t index) const { return values_[static_cast<std::size_t>(state_.wiring.results[index].second)]; }
   /// Lets go of what lies ahead, when all steps are through.
@@ -58,10 +55,13 @@ class Lane {
   Item take(int value);
   Item fetch_item(const Fetch& fetch, const std::vector<int>& resets);
   void note_reset(int value, const Item& item);
+  void take_all(int node);
   void compute(int step);
   void fail(int step, const std::string& error);
-  void drop_items(int step);
-  const std::string& name(int node) const;
+  void drop_inputs(int node);
+  void drop_outputs(int node);
+  Outcome& outcome(int node) { return tables_.outcomes[static_cast<std::size_t>(node)]; }
+  const std::vector<int>& nodes_of(int step) const { return state_.plan.turns[static_cast<std::size_t>(step)].nodes; }
 
   PlanState& state_;
   BufferPool& pool_;
@@ -72,14 +72,7 @@ class Lane {
   std::vector<Item> values_;  // by Wiring's index
   std::vector<int> readers_;  // that have not fetched the value yet
   std::vector<Item> ahead_;
-  std::vector<PortItems> inputs_, outputs_;  // of each node
-  struct Failure {
-    int node = 0;
-    std::string error;
-  };
-  std::vector<Outcome> outcomes_;
-  std::vector<Failure> failures_;
-  std::vector<double> seconds_;
+  FusedRunner::Tables tables_;
 };
 
 }  // namespace quell

@@ -51,10 +51,10 @@ Lane& SessionState::lane(std::size_t index) {
 
 void report_nodes(FrameReport& report, const Lane& lane) {
   report.node_seconds = lane.node_seconds();
-  const int failed = lane.failed_step();
+  const int failed = lane.failed_node();
   if (failed < 0) return;
   report.ok = false;
-  report.node = lane.failed_node();
+  report.node = lane.name(failed);
   report.error = lane.error();
 }
 

@@ -23,6 +23,7 @@ struct Fetch {
 struct WiredNode {
   std::vector<std::vector<Fetch>> fetches;  ///< for each item of each input port; nothing of what a fused node yields
   int first_output = 0;                     ///< value of the first item of the first output; the others follow
+  std::vector<int> needs;                   ///< nodes of the same frame
   std::vector<int> resets;                  ///< indices into Wiring::resets: what its history ends with
 };
 
