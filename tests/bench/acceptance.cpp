@@ -25,7 +25,8 @@ struct Subject {
 };
 const std::vector<Subject> kSubjects = {{"scheduler", scheduler_figures}, {"joint_bilateral", joint_bilateral_figures},
                                         {"atrous", atrous_figures},       {"flip", flip_figures},
-                                        {"games202", games202_figures},   {"svgf", svgf_figures}};
+                                        {"games202", games202_figures},   {"svgf", svgf_figures},
+                                        {"throughput", throughput_figures}};
 
 std::vector<std::string> subject_names() {
   std::vector<std::string> names;
