@@ -21,7 +21,7 @@ struct PlannedNode {
   std::vector<int> in_place_of;             ///< for each output: the input whose buffer it takes over (item by item); -1: its own
   std::size_t scratch_bytes = 0;
   std::size_t slot_scratch_bytes = 0;
-  bool by_rows = false;  ///< it may be run on some rows at a time
+  bool by_rows = false;             ///< it may be run on some rows at a time
   std::vector<Endpoint> last_uses;  ///< same-frame values that nobody needs after this node; of fused nodes the last one has all
 };
 
@@ -77,7 +77,7 @@ struct Plan {
   std::vector<Endpoint> dumps;     ///< inner endpoints that are handed to the sink, too
   std::vector<PlannedHistory> histories;
   std::vector<PlannedLoop> loops;
-  std::vector<Endpoint> inner;     ///< ascending: values that are never whole, but pass between fused nodes row by row
+  std::vector<Endpoint> inner;  ///< ascending: values that are never whole, but pass between fused nodes row by row
   /// Largest sum of buffers alive at a time in one frame: inputs and scratch memory included; history, and the scratch memory of
   /// single threads, not. All sums stop at SIZE_MAX.
   std::size_t frame_bytes = 0;

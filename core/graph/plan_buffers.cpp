@@ -43,9 +43,8 @@ Uses find_uses(const Plan& plan, const Presence& presence) {
 }
 
 bool is_yielded_by(const Plan& plan, const PlannedTurn& turn, const Endpoint& endpoint) {
-  return std::ranges::any_of(turn.nodes, [&](int position) {
-    return plan.nodes[static_cast<std::size_t>(position)].node == endpoint.node;
-  });
+  return std::ranges::any_of(turn.nodes,
+                             [&](int position) { return plan.nodes[static_cast<std::size_t>(position)].node == endpoint.node; });
 }
 
 // Whether a node of the turn may write over what the items of its input hold. Of fused nodes only one may read that, and never

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kCachedBytes = std::size_t{768} << 10;
 constexpr int kMostRows = 8;
 constexpr int kMostRadius = 2;  // of a reader: what lies around a band is computed twice
-constexpr int kBandRows = 32;     // for each row by which a node is ahead: so little of what it does is done twice
+constexpr int kBandRows = 32;   // for each row by which a node is ahead: so little of what it does is done twice
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 

@@ -165,8 +165,8 @@ struct FusedRunner::State {
         const Endpoint endpoint{planned.node, static_cast<int>(port), static_cast<int>(item)};
         const auto window = std::ranges::find(turn.windows, endpoint, &PlannedWindow::of);
         member.values.push_back(values.size());
-        values.push_back({index, port, item, shape, {}, !plan.is_inner(endpoint),
-                          window == turn.windows.end() ? 0 : window->rows});
+        values.push_back(
+            {index, port, item, shape, {}, !plan.is_inner(endpoint), window == turn.windows.end() ? 0 : window->rows});
       }
   }
 
@@ -230,7 +230,8 @@ struct FusedRunner::State {
   PortItems& outputs(std::size_t member) const { return tables->outputs[at(members[member].position)]; }
 
   void place_outputs() const {
-    for (std::size_t member = 0; member < members.size(); ++member) outputs(member).resize(members[member].pass->desc().output_count);
+    for (std::size_t member = 0; member < members.size(); ++member)
+      outputs(member).resize(members[member].pass->desc().output_count);
     for (const Value& value : values) {
       std::vector<Item>& items = outputs(value.member)[value.port];
       if (items.size() <= value.item) items.resize(value.item + 1);
@@ -282,7 +283,8 @@ struct FusedRunner::State {
     }
     for (std::size_t member = 0; member < members.size(); ++member) set_ports(worker, member);
     for (std::size_t value = 0; value < values.size(); ++value)
-      if (values[value].window_rows == 0 && !is_lost(values[value].member)) show(worker, value, item_of(values[value]).image()->raw());
+      if (values[value].window_rows == 0 && !is_lost(values[value].member))
+        show(worker, value, item_of(values[value]).image()->raw());
     for (std::size_t member = 0; member < members.size(); ++member) set_exec(worker.nodes[member]);
     return worker;
   }
@@ -375,7 +377,8 @@ struct FusedRunner::State {
     Window& window = worker.windows[index];
     int first = window.made;
     for (const Reader& reader : value.readers)
-      if (const Worker::Node& node = worker.nodes[reader.member]; !node.is_dead) first = std::min(first, node.made - reader.radius);
+      if (const Worker::Node& node = worker.nodes[reader.member]; !node.is_dead)
+        first = std::min(first, node.made - reader.radius);
     first = std::max(first, window.first);
     const auto row = static_cast<std::size_t>(Image::row_stride(value.shape.size.width)) * sizeof(float);
     const std::size_t plane = row * at(value.window_rows);

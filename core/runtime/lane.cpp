@@ -115,9 +115,9 @@ void Lane::run(int step) {
   } catch (const Cancelled&) {
     for (const int node : nodes_of(step)) drop_inputs(node), drop_outputs(node);
     throw;
-  } catch (const std::bad_alloc&) {
-    fail(step, labels_[at(step)] + ": " + out_of_memory(pool_));
-  } catch (...) { fail(step, what_failed(pool_)); }
+  } catch (const std::bad_alloc&) { fail(step, labels_[at(step)] + ": " + out_of_memory(pool_)); } catch (...) {
+    fail(step, what_failed(pool_));
+  }
   for (const int node : nodes_of(step)) {
     drop_inputs(node);
     if (outcome(node) != Outcome::done) drop_outputs(node);

@@ -18,8 +18,8 @@ struct FrameInputs {
   std::vector<Item> ahead;  ///< of Wiring::ahead; nothing where there is no such frame
 };
 
-/// Keeps its tables from frame to frame. The steps of a frame, positions in Plan::turns, are fetched, run and published, each once, after those they need;
-/// who does that in what order is the caller's affair. Only run() takes long, and needs no lock.
+/// Keeps its tables from frame to frame. The steps of a frame, positions in Plan::turns, are fetched, run and published, each
+/// once, after those they need; who does that in what order is the caller's affair. Only run() takes long, and needs no lock.
 class Lane {
  public:
   Lane(PlanState& state, const HostServices& services, BufferPool& pool, Trace* trace);

@@ -31,8 +31,7 @@ Item place_item(const Shape& shape, const Image* replaced, BufferPool& pool) {
   if (!shape.present) return {};
   if (shape.type == QUELL_TYPE_VALUE) return Values(shape.value_count, pool);
   if (!is_image(shape.type)) return {};
-  const bool fits = replaced && replaced->size() == shape.size &&
-                    info(replaced->type()).channels == info(shape.type).channels &&
+  const bool fits = replaced && replaced->size() == shape.size && info(replaced->type()).channels == info(shape.type).channels &&
                     info(replaced->type()).format == info(shape.type).format;
   if (fits && replaced->buffer().unique()) return replaced->as(shape.type);
   return Image(shape.type, shape.size, pool);

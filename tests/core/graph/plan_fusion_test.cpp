@@ -38,7 +38,8 @@ const quell_pass_desc* rows() {
 
 const InputShapes kShapes{{"color", image(100, 300)}};
 
-Plan plan_of(Builder& builder, const InputShapes& shapes = kShapes, const std::vector<std::string>& dumps = {}, bool fuse = true) {
+Plan plan_of(Builder& builder, const InputShapes& shapes = kShapes, const std::vector<std::string>& dumps = {},
+             bool fuse = true) {
   return make_plan(builder.build(), shapes, dumps, fuse);
 }
 
@@ -48,7 +49,8 @@ std::vector<std::string> turns(const Plan& plan) {
   for (const PlannedTurn& turn : plan.turns) {
     std::string& text = all.emplace_back();
     for (const int position : turn.nodes)
-      text += (text.empty() ? "" : "+") + plan.graph->nodes[static_cast<std::size_t>(plan.nodes[static_cast<std::size_t>(position)].node)].name;
+      text += (text.empty() ? "" : "+") +
+              plan.graph->nodes[static_cast<std::size_t>(plan.nodes[static_cast<std::size_t>(position)].node)].name;
   }
   return all;
 }
@@ -108,7 +110,9 @@ TEST(Fusion, KeepsWholeWhatSomebodyElseNeeds) {
 TEST(Fusion, KeepsWholeWhatIsHistory) {
   Builder builder;
   builder.input("color").node("a", rows(), {{"color", {"color"}}, {"more", {Wire("b.color", 1)}}});
-  builder.node("b", rows(), {{"color", {"a.color"}}}).node("c", rows(), {{"color", {"b.color"}}}, {{"radius", 1}}).output("c.color");
+  builder.node("b", rows(), {{"color", {"a.color"}}})
+      .node("c", rows(), {{"color", {"b.color"}}}, {{"radius", 1}})
+      .output("c.color");
   const Plan plan = plan_of(builder);
   EXPECT_THAT(turns(plan), ElementsAre("a+b+c"));
   EXPECT_THAT(inner(plan), ElementsAre("a.color"));
@@ -157,7 +161,8 @@ TEST(Fusion, StopsAtAnotherHeight) {
 TEST(Fusion, WritesOverAnInputThatNobodyElseReads) {
   Builder builder;
   builder.input("color").node("far", mix(), {{"color", {"color"}}});
-  builder.node("a", rows(), {{"color", {"far.color"}}}, {{"in_place", 1}}).node("b", rows(), {{"color", {"a.color"}}}, {{"in_place", 1}});
+  builder.node("a", rows(), {{"color", {"far.color"}}}, {{"in_place", 1}})
+      .node("b", rows(), {{"color", {"a.color"}}}, {{"in_place", 1}});
   builder.output("a.color").output("b.color");
   const Plan plan = plan_of(builder);
   EXPECT_EQ(planned(plan, "a").in_place_of, std::vector<int>{0});
