@@ -201,7 +201,8 @@ TEST(Nlm, TellsDepthsApartBesideTheBackground) {
   pass.input("feature",
              test_image(QUELL_TYPE_DEPTH, kWide, [](int x, int y, int) { return y < 30 ? 1e10F : (x < 36 ? 2.0F : 9.0F); }));
   pass.run();
-  for (int x = 0; x < 36; ++x) ASSERT_NEAR(pass.output("color").at(x, 30), 0, 1e-6) << x;
+  // At x = 35 the step itself is in the gradient.
+  for (int x = 0; x < 35; ++x) ASSERT_NEAR(pass.output("color").at(x, 30), 0, 1e-6) << x;
 }
 
 TEST(Nlm, TakesAVarianceBelowZeroAsNone) {
