@@ -6,7 +6,9 @@
 // Rules that hold for the whole interface:
 //  - Every struct starts with `struct_size`, the size its writer compiled with. A reader uses a field only when the size covers
 //    it. Elements of an array lie `struct_size` of the first element apart (QUELL_AT), so that structs can grow at the end.
-//  - A plugin loads when its major version equals the host's and its minor version is not newer.
+//  - A plugin loads when its major version equals the host's and its minor version is not newer. The minor version rises with
+//    everything that is added and that a plugin may use: a function of the host, a field, a type, a flag. An older host would
+//    not know it, and says so.
 //  - The host owns every buffer. No exception, no std type and no ownership crosses. Strings are UTF-8, zero-terminated.
 //  - A pass keeps nothing between frames, and may be run on several frames at once.
 #ifndef QUELL_SDK_ABI_H
@@ -20,7 +22,7 @@ extern "C" {
 #endif
 
 #define QUELL_ABI_MAJOR 1u
-#define QUELL_ABI_MINOR 1u  // 1: quell_inference::by_rows
+#define QUELL_ABI_MINOR 1u  // 1.1: QUELL_PORT_ANY_SIZE, quell_inference::by_rows
 #define QUELL_ABI_VERSION ((QUELL_ABI_MAJOR << 16) | QUELL_ABI_MINOR)
 
 // Element i of an array whose elements may be larger than this header knows.
