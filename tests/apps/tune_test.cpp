@@ -101,6 +101,41 @@ TEST_F(Tune, RefusesWhatItCannotSearch) {
               HasSubstr("--metric: 'tpsnr' cannot be searched by"));
 }
 
+TEST_F(Tune, SaysThatNothingBetterWasFound) {
+  make_scaled_shot();
+  const Outcome outcome = tune({"--metric", "mse", "--evaluations", "5", "-o", text("found.json")}, R"({ "gain": 0.75 })");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("nothing better than the start was found"));
+  EXPECT_EQ(found("scale.gain"), 0.75);
+}
+
+TEST_F(Tune, TellsTheMixtureBesideWhatItIsMadeOf) {
+  make_scaled_shot();
+  const Outcome outcome = tune({"--evaluations", "20", "-o", text("found.json"), "--held-out", "none"});
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("\n  mixed, frames 1-4 +1 +0\.[0-9]+\n"));
+}
+
+TEST_F(Tune, RefusesAFileThatItCannotWriteBeforeItSearches) {
+  make_scaled_shot();
+  for (const bool dry : {false, true}) {
+    std::vector<std::string> options{"-o", text("no/such/found.json")};
+    if (dry) options.push_back("--dry-run");
+    const Outcome outcome = tune(options);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("--out: " + text("no/such/found.json") + " cannot be written: No such file or directory"));
+    EXPECT_THAT(outcome.err, Not(HasSubstr("start:")));
+  }
+}
+
+TEST_F(Tune, RefusesAFrameThatCannotBeMeasured) {
+  make_scaled_shot();
+  std::filesystem::remove(path("shot/reference.0002.exr"));
+  write_file(path("shot/reference.0002.exr"), "no image");
+  const Outcome outcome = tune({"--metric", "mse", "--held-out", "none"});
+  EXPECT_NE(outcome.code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("reference.0002.exr"));
+}
+
 TEST_F(Tune, KeepsTheBestWhenItIsInterrupted) {
   make_scaled_shot();
   const std::string graph = make_graph(R"({ "gain": 2 })");
@@ -116,7 +151,7 @@ TEST_F(Tune, KeepsTheBestWhenItIsInterrupted) {
   EXPECT_LE(found("scale.gain"), 2);
 }
 
-// What the issue asks of it: a parameter that is deliberately wrong, on a part of the sample.
+// From both sides a search ends where one from nearby does, on a part of the sample.
 TEST_F(Tune, BringsAWrongParameterBack) {
   const auto mse = [&](const char* sigma) {
     const Outcome outcome = quell({"tune",
