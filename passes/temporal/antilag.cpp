@@ -64,6 +64,7 @@ class Antilag final : public Pass {
                   .max_length = static_cast<float>(p.max_length)} {}
 
   void infer(Inference& inference) const override {
+    inference.set_by_rows();
     for (const char* input : {"fast", "color", "depth"}) inference.set_radius(input, settings_.radius);
     if (inference.present("length")) inference.set_in_place("length", "length");
   }

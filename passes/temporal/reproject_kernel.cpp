@@ -1,5 +1,6 @@
 // Neighbors in a vector mostly fetch from neighbors: of each tap the lanes then lie one behind the other, or, where the motion
-// passes a whole number, in two such runs, and are loaded as such. Only where they are scattered is each lane fetched by itself.
+// passes a whole number, in two such runs, and are loaded as such. Where they are scattered, or a tap or the last lane may lie
+// outside of the image, each lane is fetched by itself.
 //
 // A result is one of its taps plus the weighted differences of the others to it: the mean of equal values is that value, bit for
 // bit, and a result errs by its own rounding, 6e-8 of it, and that of the weights, 3e-7 of the range of the taps.
@@ -22,7 +23,7 @@
 #define QUELL_REPROJECT_SHARED
 namespace quell::reproject {
 
-constexpr int kAhead = 128;
+constexpr int kAhead = 128;           // px from a site: what rows will be loaded from 8 vectors of 16 later, about the time that memory takes
 constexpr float kFarthest = 1048576;  // px that a motion can have; images are at most 65536 wide, and such an int is exact
 
 // Which taps a result has, relative to the pixel that the fetch names. Those that limit a result come first.
