@@ -22,7 +22,7 @@ extern "C" {
 #endif
 
 #define QUELL_ABI_MAJOR 1u
-#define QUELL_ABI_MINOR 1u  // 1.1: QUELL_PORT_ANY_SIZE, quell_inference::by_rows
+#define QUELL_ABI_MINOR 1u  // 1: quell_inference::by_rows, QUELL_PORT_ANY_SIZE
 #define QUELL_ABI_VERSION ((QUELL_ABI_MAJOR << 16) | QUELL_ABI_MINOR)
 
 // Element i of an array whose elements may be larger than this header knows.
