@@ -130,7 +130,7 @@ TEST_F(Tune, RefusesAFileThatItCannotWriteBeforeItSearches) {
 TEST_F(Tune, RefusesAFrameThatCannotBeMeasured) {
   make_scaled_shot();
   std::filesystem::remove(path("shot/reference.0002.exr"));
-  write_file(path("shot/reference.0002.exr"), "no image");
+  write_file("shot/reference.0002.exr", "no image");
   const Outcome outcome = tune({"--metric", "mse", "--held-out", "none"});
   EXPECT_NE(outcome.code, 0);
   EXPECT_THAT(outcome.err, HasSubstr("reference.0002.exr"));
