@@ -113,9 +113,7 @@ class Tuning {
       std::vector<double> places;
       for (const TunedParam& param : params_) places.push_back(param.place(param.start));
       find_least(places, {evaluations_, arguments_.everywhere}, [&](const std::vector<double>& at) { return evaluate(at); });
-    } catch (const Trials::Interrupted&) {
-      is_interrupted = true;
-    } catch (...) {  // what was found until then is kept
+    } catch (const Trials::Interrupted&) { is_interrupted = true; } catch (...) {  // what was found until then is kept
       if (!start_.empty()) write();
       throw;
     }

@@ -15,7 +15,7 @@
 namespace quell::app {
 namespace {
 
-constexpr double kReach = 16;        // factor that a search goes from where it starts
+constexpr double kReach = 16;       // factor that a search goes from where it starts
 constexpr double kFewValues = 256;  // of a whole number: all of them are searched
 
 struct Bounds {
@@ -94,8 +94,8 @@ Given look_up(const Graph& graph, const std::string& name) {
     given.value = value_at(at);
     if (given.value != value_at(sets.front()))
       throw Error(Fault::usage, "--params",
-                  "'" + name + "' sets parameters that have different values now, " + number_text(value_at(sets.front())) + " and " +
-                      number_text(given.value) + "; give it one first, with --set " + name + "=VALUE");
+                  "'" + name + "' sets parameters that have different values now, " + number_text(value_at(sets.front())) +
+                      " and " + number_text(given.value) + "; give it one first, with --set " + name + "=VALUE");
     given.bounds = {std::max(given.bounds.low, desc.min_value), std::min(given.bounds.high, desc.max_value)};
     given.is_whole = given.is_whole || desc.type == QUELL_PARAM_INT;
   }
@@ -168,8 +168,9 @@ void require_apart(const Graph& graph, const std::vector<TunedParam>& params, co
 Bounds whole(const std::string& name, const Bounds& bounds) {
   const Bounds inner{std::ceil(bounds.low), std::floor(bounds.high)};
   if (inner.low < inner.high) return inner;
-  throw Error(Fault::usage, "--range", "'" + name + "' is a whole number, and " + text_of(bounds) +
-                                           (inner.low == inner.high ? " holds but one of them" : " holds none of them"));
+  throw Error(Fault::usage, "--range",
+              "'" + name + "' is a whole number, and " + text_of(bounds) +
+                  (inner.low == inner.high ? " holds but one of them" : " holds none of them"));
 }
 
 }  // namespace

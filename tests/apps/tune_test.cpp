@@ -112,7 +112,7 @@ TEST_F(Tune, SaysThatNothingBetterWasFound) {
 TEST_F(Tune, TellsTheMixtureBesideWhatItIsMadeOf) {
   make_scaled_shot();
   const Outcome outcome = tune({"--evaluations", "20", "-o", text("found.json"), "--held-out", "none"});
-  EXPECT_THAT(outcome.out, testing::ContainsRegex("\n  mixed, frames 1-4 +1 +0\.[0-9]+\n"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("\n  mixed, frames 1-4 +1 +0[.][0-9]+\n"));
 }
 
 TEST_F(Tune, RefusesAFileThatItCannotWriteBeforeItSearches) {
@@ -125,6 +125,46 @@ TEST_F(Tune, RefusesAFileThatItCannotWriteBeforeItSearches) {
     EXPECT_THAT(outcome.err, HasSubstr("--out: " + text("no/such/found.json") + " cannot be written: No such file or directory"));
     EXPECT_THAT(outcome.err, Not(HasSubstr("start:")));
   }
+}
+
+TEST_F(Tune, TakesValuesThatThePassRefusesForBadOnes) {
+  make_scaled_shot();
+  const Outcome outcome = tune({"--metric", "mse", "--evaluations", "60", "-o", text("found.json"), "--range",
+                                "scale.gain=0.001..1e9", "--everywhere", "-v"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("a gain above 200000 is too much"));
+  EXPECT_NEAR(found("scale.gain"), 0.75, 0.05);
+}
+
+TEST_F(Tune, SearchesNothingTwice) {
+  make_scaled_shot();
+  const auto graph = [&](const std::string& second) {
+    write_file("two.json", R"({ "quell": 1, "name": "two", "inputs": { "color": "color" },
+      "params": { "gain": { "sets": ["a.gain", "b.gain"] } },
+      "nodes": { "a": { "pass": "test_scale", "in": { "color": "color" }, "params": { "gain": 2 } },
+                 "b": { "pass": "test_scale", "in": { "color": "a.color" }, "params": { "gain": )" +
+                               second + R"( } } },
+      "outputs": { "color": "b.color" } })");
+    return text("two.json");
+  };
+  const auto error = [&](const std::string& second, const std::string& params) {
+    const Outcome outcome = run({"tune", graph(second), text("shot"), "--params", params, "-q"});
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(error("2", "gain,b.gain"),
+              HasSubstr("--params: 'gain' and 'b.gain' set the same parameter; leave one of them out"));
+  EXPECT_THAT(error("3", "gain"), HasSubstr("'gain' sets parameters that have different values now, 2 and 3; give it one first"));
+}
+
+TEST_F(Tune, SearchesWholeNumbersBetweenWholeNumbers) {
+  make_scaled_shot();
+  const std::string graph = make_graph(R"({ "wait_from": 100 })");
+  const auto dry = [&](const std::string& range) {
+    return run({"tune", graph, text("shot"), "--params", "scale.wait_from", "--range", "scale.wait_from=" + range, "-n"});
+  };
+  EXPECT_THAT(dry("50.5..120.5").out, HasSubstr("51..120"));
+  EXPECT_THAT(dry("50.2..50.8").err, HasSubstr("'scale.wait_from' is a whole number, and 50.2..50.8 holds none of them"));
 }
 
 TEST_F(Tune, RefusesAFrameThatCannotBeMeasured) {
