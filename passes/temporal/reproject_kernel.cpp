@@ -7,6 +7,7 @@
 #include "passes/temporal/reproject_kernel.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -23,7 +24,8 @@
 #define QUELL_REPROJECT_SHARED
 namespace quell::reproject {
 
-constexpr int kAhead = 128;           // px from a site: what rows will be loaded from 8 vectors of 16 later, about the time that memory takes
+constexpr int kAhead =
+    128;  // px from a site: what rows will be loaded from 8 vectors of 16 later, about the time that memory takes
 constexpr float kFarthest = 1048576;  // px that a motion can have; images are at most 65536 wide, and such an int is exact
 
 // Which taps a result has, relative to the pixel that the fetch names. Those that limit a result come first.
@@ -425,11 +427,33 @@ HWY_INLINE void reproject_pixels(const Images& in, const Settings& s, const Pixe
   }
 }
 
+// What the pixels of a row are told of in this frame, for memory to yield it beforehand: there are more streams than the
+// processor follows by itself.
+class Ahead {
+ public:
+  Ahead(const Images& in, int y) {
+    for (const FloatImage* image : {&in.motion, &in.depth, &in.depth_gradient, &in.normal, &in.normal_gradient, &in.position})
+      for (int c = 0; *image && c < image->channels; ++c) planes_[count_++] = image->row(y, c);
+    if (in.id) planes_[count_++] = in.id.row(y);
+  }
+  HWY_INLINE void fetch(int x) const {
+    for (int i = 0; i < count_; ++i)
+      __builtin_prefetch(static_cast<const float*>(planes_[static_cast<std::size_t>(i)]) + x + kAhead);
+  }
+
+ private:
+  std::array<const void*, 13> planes_;
+  int count_ = 0;
+};
+
 template <Fetch kFetch>
 void reproject_each(const Images& in, const Settings& s, std::span<const Moved> history, int y, const FloatOutput& valid,
                     const FloatOutput& rejected) {
-  for (int x = 0; x < valid.width; x += lanes())
+  const Ahead ahead(in, y);
+  for (int x = 0; x < valid.width; x += lanes()) {
+    ahead.fetch(x);
     reproject_pixels<kFetch>(in, s, {x, y, valid.width - x}, history, valid, rejected);
+  }
 }
 
 void ReprojectRow(const Images& in, const Settings& s, std::span<const Moved> history, int y, const FloatOutput& valid,
