@@ -6,7 +6,7 @@
 #include <mutex>
 #include <utility>
 
-#include "quell/runtime/flush_to_zero.h"
+#include "quell/runtime/rows_host.h"
 #include "quell/sdk/types.h"
 
 namespace quell {
@@ -16,56 +16,6 @@ using Clock = std::chrono::steady_clock;
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 std::size_t whole_lines(std::size_t bytes) { return (bytes + 63) / 64 * 64; }  // so that two threads never share one
-
-// The host as a pass sees it that is run on some rows: its loop leaves out the others.
-class RowsHost {
- public:
-  RowsHost() : raw_{sizeof(raw_), QUELL_ABI_VERSION, this, parallel_for, log, cancelled, set_error} {}
-  RowsHost(const RowsHost&) = delete;
-  RowsHost& operator=(const RowsHost&) = delete;
-
-  void begin(const quell_host& host, std::uint32_t slot) { host_ = &host, slot_ = slot; }
-  void set_rows(int begin, int end, int height) {
-    begin_ = begin, end_ = end, height_ = height;
-    error_.clear();
-  }
-  const quell_host& raw() const { return raw_; }
-  std::string take_error() { return std::exchange(error_, {}); }
-
- private:
-  static RowsHost& self(const quell_host* host) { return *static_cast<RowsHost*>(host->context); }
-  static quell_status parallel_for(const quell_host* host, std::int64_t begin, std::int64_t end, std::int64_t grain,
-                                   quell_chunk_fn fn, void* context) {
-    RowsHost& own = self(host);
-    if (begin != 0 || end != own.height_) {
-      own.error_ = "it said that it works row by row, but its loop does not go over the " + std::to_string(own.height_) +
-                   " rows of its outputs";
-      return QUELL_FAILED;
-    }
-    grain = std::clamp<std::int64_t>(grain, 1, end);
-    const FlushToZero flush;
-    for (std::int64_t from = own.begin_, to = 0; from < own.end_; from = to) {
-      to = std::min<std::int64_t>((from / grain + 1) * grain, own.end_);
-      quell_status status = QUELL_FAILED;
-      try {
-        status = fn(context, from / grain, from, to, own.slot_);
-      } catch (...) { own.error_ = "an exception left a chunk of a parallel loop"; }
-      if (status != QUELL_OK) return status;
-    }
-    return QUELL_OK;
-  }
-  static void log(const quell_host* host, int level, const char* message) {
-    self(host).host_->log(self(host).host_, level, message);
-  }
-  static int cancelled(const quell_host* host) { return self(host).host_->cancelled(self(host).host_); }
-  static void set_error(const quell_host* host, const char* message) { self(host).error_ = message ? message : ""; }
-
-  const quell_host* host_ = nullptr;
-  std::uint32_t slot_ = 0;
-  int begin_ = 0, end_ = 0, height_ = 0;
-  std::string error_;
-  quell_host raw_;
-};
 
 // Where a fused node reads what another one yields.
 struct Reader {
