@@ -28,6 +28,7 @@ namespace quell::app {
 namespace {
 
 constexpr std::string_view kOutputBeginning = "{";
+constexpr double kImpossible = 1e12;  // cost of values that the graph refuses
 
 struct Arguments {
   GraphArguments graph;
@@ -90,6 +91,7 @@ class Tuning {
   }
 
   ExitCode run() {
+    if (arguments_.out) require_writable(*arguments_.out, kOutputBeginning);
     spdlog::info(
         "searching {} on {}; {}, {} evaluations", list_params(), describe_frames(halves_.tuned, "frame"),
         halves_.held_out.empty() ? std::string("nothing is held out") : describe_frames(halves_.held_out, "frame") + " held out",
@@ -107,22 +109,31 @@ class Tuning {
     try {
       start_ = measure(start, {halves_.tuned}).front();
       tell("start", start, start_);
-      best_figures_ = start_, least_ = cost(goal_, start_, start_);
+      best_figures_ = start_, least_ = known_[start] = cost(goal_, start_, start_);
       std::vector<double> places;
       for (const TunedParam& param : params_) places.push_back(param.place(param.start));
       find_least(places, {evaluations_, arguments_.everywhere}, [&](const std::vector<double>& at) { return evaluate(at); });
-    } catch (const Trials::Interrupted&) { is_interrupted = true; }
+    } catch (const Trials::Interrupted&) { is_interrupted = true; } catch (...) {  // what was found until then is kept
+      if (!start_.empty()) write();
+      throw;
+    }
     console_.set_status("");
     if (start_.empty()) return kInterrupted;
-    finish(is_interrupted);
+    write();
+    if (is_interrupted) spdlog::warn("interrupted after {} of {} evaluations; the best of them are kept", done_, evaluations_);
+    if (!is_interrupted) is_interrupted = !measure_held_out();
+    tell_table();
     return is_interrupted ? kInterrupted : kOk;
   }
 
  private:
-  std::vector<Figures> measure(const std::vector<double>& values, const std::vector<std::vector<std::int64_t>>& sets) {
+  std::shared_ptr<const Graph> graph_with(const std::vector<double>& values) const {
     GraphArguments graph = arguments_.graph;
     for (std::size_t i = 0; i < params_.size(); ++i) graph.options.set.push_back(params_[i].name + "=" + number_text(values[i]));
-    return trials_->run(load_graph(find_graph(graph.graph), passes_, graph.options), sets);
+    return load_graph(find_graph(graph.graph), passes_, graph.options);
+  }
+  std::vector<Figures> measure(const std::vector<double>& values, const std::vector<std::vector<std::int64_t>>& sets) {
+    return trials_->run(graph_with(values), sets);
   }
 
   double evaluate(const std::vector<double>& places) {
@@ -130,10 +141,16 @@ class Tuning {
     for (std::size_t i = 0; i < params_.size(); ++i) values.push_back(params_[i].value(places[i]));
     if (const auto known = known_.find(values); known != known_.end()) return known->second;
     if (interrupted()) throw Trials::Interrupted{};
-    const Figures figures = measure(values, {halves_.tuned}).front();
-    const double result = cost(goal_, figures, start_);
-    known_[values] = result;
     ++done_;
+    Figures figures;
+    try {
+      figures = trials_->run(graph_with(values), {halves_.tuned}).front();
+    } catch (const Error& error) {
+      if (error.fault() != Fault::usage) throw;
+      spdlog::debug("{}: {} are impossible together: {}", done_, list_values(values), error.what());
+      return known_[values] = kImpossible;
+    }
+    const double result = known_[values] = cost(goal_, figures, start_);
     if (result < least_) {
       least_ = result, best_ = values, best_figures_ = figures;
       tell(std::to_string(done_), values, figures);
@@ -152,19 +169,27 @@ class Tuning {
 
   void write() const { write_output(write_json(overrides(params_, best_)), arguments_.out, kOutputBeginning); }
 
-  void finish(bool is_interrupted) {
-    write();
-    if (is_interrupted) spdlog::warn("interrupted after {} of {} evaluations; the best of them are kept", done_, evaluations_);
-    std::string table = params_table() + figures_rows(describe_frames(halves_.tuned, "frame"), start_, best_figures_);
-    bool is_worse_elsewhere = false;
-    if (!halves_.held_out.empty() && !is_interrupted) {
-      const Figures before = measure(start_values_, {halves_.held_out}).front();
-      const Figures after = measure(best_, {halves_.held_out}).front();
-      table += figures_rows(describe_frames(halves_.held_out, "held-out frame"), before, after);
-      is_worse_elsewhere = cost(goal_, after, before) > cost(goal_, before, before);
+  // Of the frames that were held out; false when interrupted.
+  bool measure_held_out() {
+    if (halves_.held_out.empty()) return true;
+    try {
+      held_out_before_ = measure(start_values_, {halves_.held_out}).front();
+      held_out_after_ = measure(best_, {halves_.held_out}).front();
+      return true;
+    } catch (const Trials::Interrupted&) {
+      spdlog::warn("interrupted; the frames that were held out are not measured");
+      return false;
     }
+  }
+
+  void tell_table() const {
+    std::string table = params_table() + figures_rows(describe_frames(halves_.tuned, "frame"), start_, best_figures_);
+    if (!held_out_after_.empty())
+      table += figures_rows(describe_frames(halves_.held_out, "held-out frame"), held_out_before_, held_out_after_);
     (arguments_.out ? std::cout : std::cerr) << table;
-    if (is_worse_elsewhere)
+    if (best_ == start_values_) spdlog::warn("nothing better than the start was found");
+    if (!held_out_after_.empty() &&
+        cost(goal_, held_out_after_, held_out_before_) > cost(goal_, held_out_before_, held_out_before_))
       spdlog::warn(
           "on the frames that were held out, the tuned values are worse than those of the start: they fit these frames alone; "
           "search fewer parameters, or on more frames");
@@ -181,6 +206,7 @@ class Tuning {
   }
   std::string figures_rows(const std::string& frames, const Figures& before, const Figures& after) const {
     std::string rows;
+    if (goal_.metrics.size() > 1) rows += row(goal_.name + ", " + frames, {"1", figure_text(cost(goal_, after, before), 4)});
     for (std::size_t i = 0; i < goal_.metrics.size(); ++i) {
       const int decimals = decimals_for(goal_.metrics[i], std::vector<double>{before[i], after[i]});
       rows += row(std::string(info(goal_.metrics[i]).name) + ", " + frames,
@@ -233,7 +259,7 @@ class Tuning {
   std::optional<Trials> trials_;
   std::map<std::vector<double>, double> known_;
   std::vector<double> start_values_, best_;
-  Figures start_, best_figures_;
+  Figures start_, best_figures_, held_out_before_, held_out_after_;
   double least_ = 0;
 };
 
@@ -290,7 +316,7 @@ Command add_tune(CLI::App& program) {
   app.add_option(
          "--held-out", arguments->held_out,
          "Frames that are not searched on, and tell whether what is found holds there, too; 'none' for none. By default the "
-         "later half.")
+         "later half. Where the parameters act over time, hold out the first frames instead, whose history is short.")
       ->type_name("FRAMES")
       ->group(kMeasureGroup);
   add_text(app, "--evaluations", arguments->evaluations, "N",
@@ -301,6 +327,7 @@ Command add_tune(CLI::App& program) {
       ->disable_flag_override()
       ->group(kScheduleGroup);
   add_options(app, arguments->schedule);
+  app.remove_option(app.get_option("--on-error"));  // a frame that fails cannot be measured
   add_options(app, arguments->isa);
   app.add_option("-o,--out", arguments->out, "Write what is found to a file; it is printed otherwise.")
       ->type_name("FILE")

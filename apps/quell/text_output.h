@@ -12,4 +12,7 @@ namespace quell::app {
 void write_output(const std::string& text, const std::optional<std::string>& out, std::string_view beginning,
                   const char* option = "--out");
 
+/// The same refusals before there is a text, so that long work does not end with one.
+void require_writable(const std::string& out, std::string_view beginning, const char* option = "--out");
+
 }  // namespace quell::app

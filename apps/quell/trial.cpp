@@ -89,9 +89,12 @@ std::vector<Figures> Trials::run(const std::shared_ptr<const Graph>& graph, cons
   std::vector<Figures> figures;
   for (const std::vector<std::int64_t>& set : sets) {
     std::vector<Score> sums(options_.compare.metrics.size());
-    for (const std::int64_t frame : set)
-      if (const auto found = scores.find(frame); found != scores.end())
-        for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += found->second[i];
+    for (const std::int64_t frame : set) {
+      const auto found = scores.find(frame);
+      if (found == scores.end())
+        throw Error(Fault::input, "--reference", "frame " + std::to_string(frame) + " could not be measured against it");
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += found->second[i];
+    }
     Figures& own = figures.emplace_back();
     for (std::size_t i = 0; i < sums.size(); ++i) own.push_back(value(options_.compare.metrics[i], sums[i]));
   }

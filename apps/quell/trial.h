@@ -34,7 +34,8 @@ class Trials {
   Trials(const Job& job, MeasuringOptions options, SessionOptions session);
 
   /// Of a graph that differs from the one before in parameters alone: figures of each set of frames. The frames up to the last
-  /// of all sets are run. Throws Error(frame) when one fails, Interrupted when a signal came.
+  /// of all sets are run. Throws Error(frame) when one fails, Error(input) when one cannot be measured, Interrupted when a
+  /// signal came.
   std::vector<Figures> run(const std::shared_ptr<const Graph>& graph, const std::vector<std::vector<std::int64_t>>& sets);
 
   struct Interrupted {};

@@ -15,7 +15,8 @@
 namespace quell::app {
 namespace {
 
-constexpr double kReach = 16;  // factor that a search goes from where it starts
+constexpr double kReach = 16;       // factor that a search goes from where it starts
+constexpr double kFewValues = 256;  // of a whole number: all of them are searched
 
 struct Bounds {
   double low, high;
@@ -63,6 +64,8 @@ std::vector<NodeParam> find(const Graph& graph, const std::string& name) {
                   (close.empty() ? "; those that are numbers are " + list_names(known, "and") : close));
 }
 
+bool same(const NodeParam& a, const NodeParam& b) { return a.node == b.node && a.param == b.param; }
+
 double number_of(const ParamValue& value) {
   if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&value.elements)) return static_cast<double>(whole->front());
   return std::get<std::vector<double>>(value.elements).front();
@@ -79,13 +82,20 @@ Given look_up(const Graph& graph, const std::string& name) {
   const std::vector<NodeParam> sets = find(graph, name);
   if (sets.empty())
     throw Error(Fault::usage, "--params", "'" + name + "' sets nothing in the graph as it is with these inputs; leave it out");
+  const auto value_at = [&](const NodeParam& at) {
+    return number_of(graph.nodes[static_cast<std::size_t>(at.node)].instance->values()[at.param]);
+  };
   for (const NodeParam& at : sets) {
     const quell_param_desc& desc = describe(graph, at);
     if (!is_number(desc))
       throw Error(
           Fault::usage, "--params",
           "'" + name + "' is not a number, so that there is nothing to search between; choose among its values with --set");
-    given.value = number_of(graph.nodes[static_cast<std::size_t>(at.node)].instance->values()[at.param]);
+    given.value = value_at(at);
+    if (given.value != value_at(sets.front()))
+      throw Error(Fault::usage, "--params",
+                  "'" + name + "' sets parameters that have different values now, " + number_text(value_at(sets.front())) +
+                      " and " + number_text(given.value) + "; give it one first, with --set " + name + "=VALUE");
     given.bounds = {std::max(given.bounds.low, desc.min_value), std::min(given.bounds.high, desc.max_value)};
     given.is_whole = given.is_whole || desc.type == QUELL_PARAM_INT;
   }
@@ -120,6 +130,7 @@ Bounds choose_bounds(const std::string& name, const Given& given, const Bounds* 
     return *asked;
   }
   if (given.bounds.low >= 0 && given.bounds.high <= 1) return given.bounds;
+  if (given.is_whole && given.bounds.high - given.bounds.low < kFewValues) return given.bounds;
   if (given.value > 0)
     return {std::max(given.bounds.low, given.value / kReach), std::min(given.bounds.high, given.value * kReach)};
   throw Error(Fault::usage, "--params",
@@ -137,9 +148,32 @@ double TunedParam::value(double place) const {
 }
 
 double TunedParam::place(double value) const {
+  value = std::clamp(value, low, high);
   const double exact = is_geometric ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
   return std::clamp(exact, 0.0, 1.0);
 }
+
+namespace {
+
+// What two names that are searched both set would be searched twice.
+void require_apart(const Graph& graph, const std::vector<TunedParam>& params, const std::string& name) {
+  for (const TunedParam& other : params)
+    for (const NodeParam& a : find(graph, other.name))
+      for (const NodeParam& b : find(graph, name))
+        if (same(a, b))
+          throw Error(Fault::usage, "--params",
+                      "'" + other.name + "' and '" + name + "' set the same parameter; leave one of them out");
+}
+
+Bounds whole(const std::string& name, const Bounds& bounds) {
+  const Bounds inner{std::ceil(bounds.low), std::floor(bounds.high)};
+  if (inner.low < inner.high) return inner;
+  throw Error(Fault::usage, "--range",
+              "'" + name + "' is a whole number, and " + text_of(bounds) +
+                  (inner.low == inner.high ? " holds but one of them" : " holds none of them"));
+}
+
+}  // namespace
 
 std::vector<TunedParam> find_tuned_params(const Graph& graph, const std::string& names, const std::vector<std::string>& ranges) {
   std::map<std::string, Bounds> asked = parse_ranges(ranges);
@@ -149,7 +183,9 @@ std::vector<TunedParam> find_tuned_params(const Graph& graph, const std::string&
       throw Error(Fault::usage, "--params", "'" + name + "' stands there twice; leave one of them out");
     const Given given = look_up(graph, name);
     const auto range = asked.find(name);
-    const Bounds bounds = choose_bounds(name, given, range == asked.end() ? nullptr : &range->second);
+    require_apart(graph, params, name);
+    Bounds bounds = choose_bounds(name, given, range == asked.end() ? nullptr : &range->second);
+    if (given.is_whole) bounds = whole(name, bounds);
     if (range != asked.end()) asked.erase(range);
     const bool is_geometric = bounds.low > 0 && (bounds.high > 4 * bounds.low);
     params.push_back({name, given.value, bounds.low, bounds.high, given.is_whole, is_geometric});

@@ -23,9 +23,10 @@ struct TunedParam {
   double place(double value) const;
 };
 
-/// `names` as --params has them; `ranges` as --range has them: "name=low..high". Without one, a parameter that goes from 0 to 1
-/// is searched there, any other one above 0 from a sixteenth of its value to sixteen times it, as far as it may go. Throws
-/// Error(usage) naming the option: no such parameter, none that is a number, no range to be had, or an impossible one.
+/// `names` as --params has them; `ranges` as --range has them: "name=low..high". Without one, a parameter that goes from 0 to 1,
+/// or a whole number of few values, is searched as far as it may go, any other one above 0 from a sixteenth of its value to
+/// sixteen times it. Throws Error(usage) naming the option: no such parameter, none that is a number, two that set the same, no
+/// range to be had, or an impossible one.
 std::vector<TunedParam> find_tuned_params(const Graph& graph, const std::string& names, const std::vector<std::string>& ranges);
 
 /// "0.153"; six digits that matter.

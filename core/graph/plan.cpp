@@ -4,6 +4,7 @@
 #include <set>
 
 #include "quell/graph/plan_buffers.h"
+#include "quell/graph/plan_fusion.h"
 #include "quell/graph/plan_loops.h"
 #include "quell/graph/plan_presence.h"
 #include "quell/graph/plan_shapes.h"
@@ -110,6 +111,8 @@ Shape Plan::shape(const Endpoint& endpoint) const {
 
 std::size_t Plan::bytes(const Endpoint& endpoint) const { return planning::bytes_of(shape(endpoint)); }
 
+bool Plan::is_inner(const Endpoint& endpoint) const { return std::ranges::binary_search(inner, endpoint); }
+
 std::vector<PlannedResult> Plan::results() const {
   std::vector<PlannedResult> all;
   for (const int index : outputs) {
@@ -121,7 +124,7 @@ std::vector<PlannedResult> Plan::results() const {
   return all;
 }
 
-Plan make_plan(std::shared_ptr<const Graph> graph, const InputShapes& inputs, const std::vector<std::string>& dumps) {
+Plan make_plan(std::shared_ptr<const Graph> graph, const InputShapes& inputs, const std::vector<std::string>& dumps, bool fuse) {
   Plan plan;
   plan.graph = std::move(graph);
   Diagnostics errors;
@@ -133,6 +136,7 @@ Plan make_plan(std::shared_ptr<const Graph> graph, const InputShapes& inputs, co
   choose_nodes(plan, presence);
   planning::infer_shapes(plan, presence);
   planning::plan_histories(plan, presence);
+  planning::plan_turns(plan, presence, fuse);
   planning::plan_buffers(plan, presence);
   plan.loops = planning::find_loops(plan, presence);
   return plan;

@@ -64,22 +64,38 @@ class Printer {
 
   std::string nodes() const {
     const std::vector<std::size_t>& alive = plan_.alive_bytes;
-    std::vector<std::string> headings;
-    std::size_t width = 0;
-    for (const PlannedNode& planned : plan_.nodes) {
-      const Node& node = node_of(planned.node);
-      headings.push_back(std::to_string(headings.size() + 1) + "  " + node.name + ": " + node.pass->id);
-      if (headings.size() < 10) headings.back().insert(0, " ");
-      width = std::max(width, headings.back().size());
-    }
+    std::vector<std::string> headings(plan_.nodes.size());
+    std::size_t width = 0, count = 0;
+    for (const PlannedTurn& turn : plan_.turns)
+      for (const int position : turn.nodes) {
+        const Node& node = node_of(plan_.nodes[static_cast<std::size_t>(position)].node);
+        std::string& heading = headings[static_cast<std::size_t>(position)];
+        heading = std::to_string(++count) + "  " + node.name + ": " + node.pass->id;
+        if (count < 10) heading.insert(0, " ");
+        width = std::max(width, heading.size());
+      }
     Table table(6);
-    for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
-      headings[i].resize(width, ' ');
-      table.add_heading(" " + headings[i] + "   " + format_bytes(alive[i]) + " alive" + scratch(plan_.nodes[i]));
-      add_reads(table, plan_.nodes[i]);
-      add_writes(table, plan_.nodes[i]);
+    for (const PlannedTurn& turn : plan_.turns) {
+      if (turn.is_fused()) table.add_heading(" fused: " + describe(turn));
+      for (const int position : turn.nodes) {
+        const PlannedNode& planned = plan_.nodes[static_cast<std::size_t>(position)];
+        std::string& heading = headings[static_cast<std::size_t>(position)];
+        heading.resize(width, ' ');
+        table.add_heading(" " + heading + "   " + format_bytes(alive[static_cast<std::size_t>(position)]) + " alive" +
+                          scratch(planned));
+        add_reads(table, planned);
+        add_writes(table, planned);
+      }
     }
     return table.render();
+  }
+
+  // "light, blend; 5 rows at a time, 700 KiB a thread"
+  std::string describe(const PlannedTurn& turn) const {
+    std::string names;
+    for (const int position : turn.nodes)
+      names += (names.empty() ? "" : ", ") + node_of(plan_.nodes[static_cast<std::size_t>(position)].node).name;
+    return names + "; " + format_count(turn.rows, "row") + " at a time, " + format_bytes(turn.window_bytes) + " a thread";
   }
 
   static std::string scratch(const PlannedNode& planned) {
@@ -131,9 +147,11 @@ class Printer {
       for (std::size_t item = 0; item < planned.outputs[port].size(); ++item) {
         const Shape& shape = planned.outputs[port][item];
         if (!shape.present) continue;
+        const Endpoint endpoint{planned.node, static_cast<int>(port), static_cast<int>(item)};
         const int place = planned.in_place_of[port];
-        const std::string where =
-            place < 0 ? bytes(shape) : "in place of " + item_name(input_port(node, static_cast<std::size_t>(place)), item);
+        std::string where = bytes(shape);
+        if (place >= 0) where = "in place of " + item_name(input_port(node, static_cast<std::size_t>(place)), item);
+        if (plan_.is_inner(endpoint)) where = "row by row";
         table.add_row({item_name(output_port(node, port), item), "->", std::string(name(shape.type)), format_size(shape), where});
       }
   }

@@ -79,6 +79,12 @@ void check_answer(const Node& node, const PortShapes& inputs, const PortShapes& 
       refuse("output '" + std::string(desc.name) + "' takes the place of input '" + input_port(node, input).name + "', but " +
              fault);
   }
+  if (answer.by_rows) {
+    if (answer.scratch_bytes > 0) refuse("it works row by row, but asks for scratch memory for the whole frame");
+    for (const std::vector<Shape>& port : answer.outputs)
+      for (const Shape& shape : port)
+        if (shape.present && !is_image(shape.type)) refuse("it works row by row, but yields what is not an image");
+  }
   if (answer.scratch_bytes > Image::kMaxBytes || answer.slot_scratch_bytes > Image::kMaxBytes)
     refuse("it asks for more than 1 TiB of scratch memory");
 }
@@ -100,11 +106,13 @@ PlannedNode ask_pass(const Graph& graph, int index, const PortShapes& inputs, co
                             answer.radius.data(),
                             answer.in_place_of.data(),
                             0,
+                            0,
                             0};
   node.instance->infer(inference);
   answer.outputs = raw_outputs.shapes();
   answer.scratch_bytes = inference.scratch_bytes;
   answer.slot_scratch_bytes = inference.slot_scratch_bytes;
+  answer.by_rows = inference.by_rows != 0;
   check_answer(node, inputs, outputs, answer);
   return answer;
 }

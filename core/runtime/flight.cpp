@@ -13,11 +13,15 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 std::size_t add(std::size_t a, std::size_t b) { return a > SIZE_MAX - b ? SIZE_MAX : a + b; }
 
 std::size_t bytes_of_step(const Plan& plan, std::size_t step, int threads) {
-  const PlannedNode& planned = plan.nodes[step];
-  std::size_t bytes = add(planned.scratch_bytes, slot_scratch(plan, step, threads));
-  for (std::size_t port = 0; port < planned.outputs.size(); ++port)
-    for (std::size_t item = 0; item < planned.outputs[port].size(); ++item)
-      bytes = add(bytes, plan.bytes({planned.node, static_cast<int>(port), static_cast<int>(item)}));
+  std::size_t bytes = thread_memory(plan, step, threads);
+  for (const int position : plan.turns[step].nodes) {
+    const PlannedNode& planned = plan.nodes[at(position)];
+    bytes = add(bytes, planned.scratch_bytes);
+    for (std::size_t port = 0; port < planned.outputs.size(); ++port)
+      for (std::size_t item = 0; item < planned.outputs[port].size(); ++item)
+        if (const Endpoint endpoint{planned.node, static_cast<int>(port), static_cast<int>(item)}; !plan.is_inner(endpoint))
+          bytes = add(bytes, plan.bytes(endpoint));
+  }
   return bytes;
 }
 
@@ -27,7 +31,7 @@ void Flight::use(const PlanState& state, const Window& window, int threads) {
   wiring_ = &state.wiring;
   window_ = window;
   step_bytes_.clear();
-  for (std::size_t step = 0; step < state.plan.nodes.size(); ++step)
+  for (std::size_t step = 0; step < state.plan.turns.size(); ++step)
     step_bytes_.push_back(bytes_of_step(state.plan, step, threads));
 
   std::set<Endpoint> kept;

@@ -12,10 +12,10 @@
 
 namespace quell {
 
-/// A node of a frame. The earliest frame comes first, then the plan's order.
+/// A step of a frame. The earliest frame comes first, then the plan's order.
 struct FrameStep {
   std::size_t index = 0;  ///< of the frame, counted from the run's first
-  int step = 0;           ///< position in Plan::nodes
+  int step = 0;           ///< position in Plan::turns
   auto operator<=>(const FrameStep&) const = default;
 };
 

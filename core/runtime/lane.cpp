@@ -20,22 +20,23 @@ bool fits(const Item& item, const Shape& planned) {
 }  // namespace
 
 Lane::Lane(PlanState& state, const HostServices& services, BufferPool& pool, Trace* trace)
-    : state_(state),
-      pool_(pool),
-      trace_(trace),
-      values_(state.wiring.readers.size()),
-      inputs_(state.plan.nodes.size()),
-      outputs_(state.plan.nodes.size()),
-      outcomes_(state.plan.nodes.size()),
-      errors_(state.plan.nodes.size()),
-      seconds_(state.plan.nodes.size()) {
-  for (std::size_t step = 0; step < state.plan.nodes.size(); ++step) {
-    const PlannedNode& planned = state.plan.nodes[step];
-    const Node& node = state.plan.graph->nodes[at(planned.node)];
-    runners_.emplace_back(node.name, *node.instance,
+    : state_(state), pool_(pool), trace_(trace), values_(state.wiring.readers.size()) {
+  const std::size_t nodes = state.plan.nodes.size();
+  tables_.inputs.resize(nodes), tables_.outputs.resize(nodes);
+  tables_.outcomes.resize(nodes), tables_.errors.resize(nodes), tables_.seconds.resize(nodes);
+  for (std::size_t node = 0; node < nodes; ++node)
+    for (const std::vector<Fetch>& port : state.wiring.nodes[node].fetches) tables_.inputs[node].emplace_back(port.size());
+  for (const PlannedTurn& turn : state.plan.turns) {
+    std::string& label = labels_.emplace_back();
+    for (const int node : turn.nodes) label += (label.empty() ? "" : " + ") + name(node);
+    if (turn.is_fused()) {
+      runners_.emplace_back(std::in_place_type<FusedRunner>, label, state.plan, turn, services, pool);
+      continue;
+    }
+    const PlannedNode& planned = state.plan.nodes[at(turn.nodes.front())];
+    runners_.emplace_back(std::in_place_type<NodeRunner>, label, *state.plan.graph->nodes[at(planned.node)].instance,
                           NodeLayout{planned.outputs, planned.in_place_of, planned.scratch_bytes, planned.slot_scratch_bytes},
                           services, pool);
-    for (const std::vector<Fetch>& port : state.wiring.steps[step].fetches) inputs_[step].emplace_back(port.size());
   }
 }
 
@@ -44,8 +45,8 @@ void Lane::begin(std::int64_t frame, FrameInputs inputs) {
   frame_ = frame;
   readers_ = state_.wiring.readers;
   ahead_ = std::move(inputs.ahead);
-  std::ranges::fill(outcomes_, Outcome::pending);
-  std::ranges::fill(seconds_, 0.0);
+  std::ranges::fill(tables_.outcomes, Outcome::pending);
+  std::ranges::fill(tables_.seconds, 0.0);
   for (std::size_t value = 0; value < inputs.items.size(); ++value) {
     for (const int line : state_.wiring.lines[value]) state_.history.add(line, frame, inputs.items[value]);
     note_reset(static_cast<int>(value), inputs.items[value]);
@@ -53,15 +54,22 @@ void Lane::begin(std::int64_t frame, FrameInputs inputs) {
   }
 }
 
-bool Lane::is_lost(int step) const {
-  return std::ranges::any_of(state_.wiring.steps[at(step)].needs, [&](int needed) {
-    return outcomes_[at(needed)] == Outcome::failed || outcomes_[at(needed)] == Outcome::lost;
-  });
+bool Lane::is_lost(int step) {
+  const auto is_gone = [&](int node) { return outcome(node) == Outcome::failed || outcome(node) == Outcome::lost; };
+  for (const int node : nodes_of(step))
+    if (std::ranges::any_of(state_.wiring.nodes[at(node)].needs, is_gone)) outcome(node) = Outcome::lost;
+  return std::ranges::all_of(nodes_of(step), is_gone);
 }
 
 void Lane::skip(int step) {
-  outcomes_[at(step)] = Outcome::lost;
-  for (const std::vector<Fetch>& port : state_.wiring.steps[at(step)].fetches)
+  for (const int node : nodes_of(step)) {
+    outcome(node) = Outcome::lost;
+    take_all(node);
+  }
+}
+
+void Lane::take_all(int node) {
+  for (const std::vector<Fetch>& port : state_.wiring.nodes[at(node)].fetches)
     for (const Fetch& fetch : port) {
       take(fetch.value);
       take(fetch.initial);
@@ -87,51 +95,76 @@ Item Lane::fetch_item(const Fetch& fetch, const std::vector<int>& resets) {
 }
 
 void Lane::fetch(int step) {
-  const std::vector<int>& resets = state_.wiring.steps[at(step)].resets;
-  const std::vector<std::vector<Fetch>>& fetches = state_.wiring.steps[at(step)].fetches;
-  for (std::size_t port = 0; port < fetches.size(); ++port)
-    for (std::size_t i = 0; i < fetches[port].size(); ++i) inputs_[at(step)][port][i] = fetch_item(fetches[port][i], resets);
+  for (const int node : nodes_of(step)) {
+    if (outcome(node) == Outcome::lost) {
+      take_all(node);
+      continue;
+    }
+    const std::vector<int>& resets = state_.wiring.nodes[at(node)].resets;
+    const std::vector<std::vector<Fetch>>& fetches = state_.wiring.nodes[at(node)].fetches;
+    for (std::size_t port = 0; port < fetches.size(); ++port)
+      for (std::size_t i = 0; i < fetches[port].size(); ++i)
+        tables_.inputs[at(node)][port][i] = fetch_item(fetches[port][i], resets);
+  }
 }
 
 void Lane::run(int step) {
   const auto start = Trace::Clock::now();
   try {
-    runners_[at(step)].run(frame_, inputs_[at(step)], outputs_[at(step)]);
-    outcomes_[at(step)] = Outcome::done;
+    compute(step);
   } catch (const Cancelled&) {
-    drop_inputs(step);
+    for (const int node : nodes_of(step)) drop_inputs(node), drop_outputs(node);
     throw;
-  } catch (const std::bad_alloc&) {
-    errors_[at(step)] = name(step) + ": " + out_of_memory(pool_);
-    outcomes_[at(step)] = Outcome::failed;
-  } catch (...) {
-    errors_[at(step)] = what_failed(pool_);
-    outcomes_[at(step)] = Outcome::failed;
+  } catch (const std::bad_alloc&) { fail(step, labels_[at(step)] + ": " + out_of_memory(pool_)); } catch (...) {
+    fail(step, what_failed(pool_));
   }
-  const auto end = Trace::Clock::now();
-  seconds_[at(step)] = std::chrono::duration<double>(end - start).count();
-  if (outcomes_[at(step)] == Outcome::failed) drop_inputs(step);
+  for (const int node : nodes_of(step)) {
+    drop_inputs(node);
+    if (outcome(node) != Outcome::done) drop_outputs(node);
+  }
   if (!trace_) return;
-  trace_->slice(Trace::Kind::node, name(step), frame_, start, end);
+  trace_->slice(Trace::Kind::node, labels_[at(step)], frame_, start, Trace::Clock::now());
   trace_->memory(pool_.usage());
 }
 
-void Lane::drop_inputs(int step) {
-  for (PortItems* items : {&inputs_[at(step)], &outputs_[at(step)]})
-    for (std::vector<Item>& port : *items) std::ranges::fill(port, Item());
+void Lane::compute(int step) {
+  if (auto* fused = std::get_if<FusedRunner>(&runners_[at(step)])) return fused->run(frame_, tables_);
+  const std::size_t node = at(nodes_of(step).front());
+  const auto start = Trace::Clock::now();
+  std::get<NodeRunner>(runners_[at(step)]).run(frame_, tables_.inputs[node], tables_.outputs[node]);
+  tables_.seconds[node] = std::chrono::duration<double>(Trace::Clock::now() - start).count();
+  tables_.outcomes[node] = Outcome::done;
+}
+
+void Lane::fail(int step, const std::string& error) {
+  for (const int node : nodes_of(step)) {
+    if (outcome(node) == Outcome::lost) continue;
+    outcome(node) = Outcome::failed;
+    tables_.errors[at(node)] = error;
+  }
+}
+
+void Lane::drop_inputs(int node) {
+  for (std::vector<Item>& port : tables_.inputs[at(node)]) std::ranges::fill(port, Item());
+}
+void Lane::drop_outputs(int node) {
+  for (std::vector<Item>& port : tables_.outputs[at(node)]) std::ranges::fill(port, Item());
 }
 
 void Lane::publish(int step) {
-  if (outcomes_[at(step)] != Outcome::done) return;
-  int value = state_.wiring.steps[at(step)].first_output;
-  for (std::vector<Item>& port : outputs_[at(step)])
-    for (Item& output : port) {
-      Item item = std::exchange(output, {});
-      for (const int line : state_.wiring.lines[at(value)]) state_.history.add(line, frame_, item);
-      note_reset(value, item);
-      if (readers_[at(value)] > 0) values_[at(value)] = std::move(item);
-      ++value;
+  for (const int node : nodes_of(step)) {
+    if (outcome(node) != Outcome::done) continue;
+    int value = state_.wiring.nodes[at(node)].first_output;
+    for (std::size_t port = 0; port < state_.plan.nodes[at(node)].outputs.size(); ++port) {
+      std::vector<Item>& items = tables_.outputs[at(node)][port];
+      for (std::size_t i = 0; i < state_.plan.nodes[at(node)].outputs[port].size(); ++i, ++value) {
+        Item item = i < items.size() ? std::exchange(items[i], {}) : Item();
+        for (const int line : state_.wiring.lines[at(value)]) state_.history.add(line, frame_, item);
+        note_reset(value, item);
+        if (readers_[at(value)] > 0) values_[at(value)] = std::move(item);
+      }
     }
+  }
 }
 
 void Lane::note_reset(int value, const Item& item) {
@@ -141,19 +174,19 @@ void Lane::note_reset(int value, const Item& item) {
     if (state_.wiring.resets[reset].value == value) state_.history.reset(static_cast<int>(reset), frame_);
 }
 
-int Lane::failed_step() const {
-  const auto failed = std::ranges::find(outcomes_, Outcome::failed);
-  return failed == outcomes_.end() ? -1 : static_cast<int>(failed - outcomes_.begin());
+int Lane::failed_node() const {
+  const auto failed = std::ranges::find(tables_.outcomes, Outcome::failed);
+  return failed == tables_.outcomes.end() ? -1 : static_cast<int>(failed - tables_.outcomes.begin());
 }
 
-const std::string& Lane::name(int step) const { return state_.plan.graph->nodes[at(state_.plan.nodes[at(step)].node)].name; }
+const std::string& Lane::name(int node) const { return state_.plan.graph->nodes[at(state_.plan.nodes[at(node)].node)].name; }
 
 void Lane::drop_ahead() { std::ranges::fill(ahead_, Item()); }
 
 void Lane::clear() {
   std::ranges::fill(values_, Item());
   drop_ahead();
-  for (std::size_t step = 0; step < inputs_.size(); ++step) drop_inputs(static_cast<int>(step));
+  for (int node = 0; node < static_cast<int>(tables_.inputs.size()); ++node) drop_inputs(node), drop_outputs(node);
 }
 
 }  // namespace quell

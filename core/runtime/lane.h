@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "quell/runtime/fused_runner.h"
 #include "quell/runtime/node_runner.h"
 #include "quell/runtime/plan_state.h"
 
@@ -16,34 +18,32 @@ struct FrameInputs {
   std::vector<Item> ahead;  ///< of Wiring::ahead; nothing where there is no such frame
 };
 
-/// Keeps its tables from frame to frame. The steps of a frame are fetched, run and published, each once, after those they need;
-/// who does that in what order is the caller's affair. Only run() takes long, and needs no lock.
+/// Keeps its tables from frame to frame. The steps of a frame, positions in Plan::turns, are fetched, run and published, each
+/// once, after those they need; who does that in what order is the caller's affair. Only run() takes long, and needs no lock.
 class Lane {
  public:
-  enum class Outcome : std::uint8_t { pending, done, failed, lost };  ///< lost: a step that it needs failed, or was lost
-
   Lane(PlanState& state, const HostServices& services, BufferPool& pool, Trace* trace);
 
   /// Forgets the frame before.
   void begin(std::int64_t frame, FrameInputs inputs);
   std::int64_t frame() const { return frame_; }
 
-  /// Whether a step that this one needs has failed: then it is skipped instead.
-  bool is_lost(int step) const;
+  /// Whether each node of the step needs one that has failed: then it is skipped instead.
+  bool is_lost(int step);
   void skip(int step);
 
   /// Takes the step's inputs out of the frame's values and the history.
   void fetch(int step);
-  /// Computes. Throws Cancelled; every other exception is kept and makes the step a failed one.
+  /// Computes. Throws Cancelled; every other exception is kept and makes its nodes failed ones.
   void run(int step);
   /// Makes its results known to the frame and the history.
   void publish(int step);
 
-  /// The first failed step in the plan's order; -1 when none failed.
-  int failed_step() const;
-  const std::string& error() const { return errors_[static_cast<std::size_t>(failed_step())]; }
-  const std::string& name(int step) const;
-  const std::vector<double>& node_seconds() const { return seconds_; }
+  /// The first failed node in the plan's order, a position in Plan::nodes; -1 when none failed.
+  int failed_node() const;
+  const std::string& error() const { return tables_.errors[static_cast<std::size_t>(failed_node())]; }
+  const std::string& name(int node) const;
+  const std::vector<double>& node_seconds() const { return tables_.seconds; }  ///< by position in Plan::nodes
   /// Of Wiring::results, when all steps are through.
   const Item& result(std::size_t index) const { return values_[static_cast<std::size_t>(state_.wiring.results[index].second)]; }
   /// Lets go of what lies ahead, when all steps are through.
@@ -55,20 +55,24 @@ class Lane {
   Item take(int value);
   Item fetch_item(const Fetch& fetch, const std::vector<int>& resets);
   void note_reset(int value, const Item& item);
-  void drop_inputs(int step);
+  void take_all(int node);
+  void compute(int step);
+  void fail(int step, const std::string& error);
+  void drop_inputs(int node);
+  void drop_outputs(int node);
+  Outcome& outcome(int node) { return tables_.outcomes[static_cast<std::size_t>(node)]; }
+  const std::vector<int>& nodes_of(int step) const { return state_.plan.turns[static_cast<std::size_t>(step)].nodes; }
 
   PlanState& state_;
   BufferPool& pool_;
   Trace* trace_;
-  std::vector<NodeRunner> runners_;
+  std::vector<std::variant<NodeRunner, FusedRunner>> runners_;
+  std::vector<std::string> labels_;  // of each step: names of its nodes
   std::int64_t frame_ = 0;
   std::vector<Item> values_;  // by Wiring's index
   std::vector<int> readers_;  // that have not fetched the value yet
   std::vector<Item> ahead_;
-  std::vector<PortItems> inputs_, outputs_;  // of each step
-  std::vector<Outcome> outcomes_;
-  std::vector<std::string> errors_;
-  std::vector<double> seconds_;
+  FusedRunner::Tables tables_;
 };
 
 }  // namespace quell

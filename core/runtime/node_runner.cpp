@@ -4,42 +4,11 @@
 #include <cassert>
 #include <utility>
 
+#include "quell/runtime/raw_port.h"
 #include "quell/sdk/types.h"
 
 namespace quell {
 namespace {
-
-// The items of one port as the C interface wants them. The pointers lead into this object, which must not move while they are
-// used.
-class RawPort {
- public:
-  void set(const std::vector<Item>& items) {
-    items_.resize(items.size()), images_.resize(items.size()), values_.resize(items.size());
-    for (std::size_t i = 0; i < items.size(); ++i) set_item(i, items[i]);
-  }
-  quell_port raw() const { return {sizeof(quell_port), static_cast<std::uint32_t>(items_.size()), items_.data()}; }
-  // Which the pass may have lowered, in an output.
-  std::size_t value_count(std::size_t i) const { return values_[i].count; }
-
- private:
-  void set_item(std::size_t i, const Item& item) {
-    items_[i] = {sizeof(quell_item), 0, nullptr, nullptr, nullptr};
-    if (!item) return;
-    items_[i].type = static_cast<std::uint32_t>(item.type());
-    if (item.image()) {
-      images_[i] = item.image()->raw();
-      items_[i].image = &images_[i];
-    } else if (item.camera()) {
-      items_[i].camera = &item.camera()->raw();
-    } else {
-      values_[i] = item.values()->raw();
-      items_[i].values = &values_[i];
-    }
-  }
-  std::vector<quell_item> items_;
-  std::vector<quell_image> images_;
-  std::vector<quell_values> values_;
-};
 
 void let_go(PortItems& ports) {
   for (std::vector<Item>& items : ports) std::ranges::fill(items, Item());
@@ -78,29 +47,12 @@ struct NodeRunner::Tables {
         outputs(raw_outputs.size()),
         slot_pointers(services.executor->slots()) {}
 
-  Image place_image(const Shape& shape, int in_place_of, std::size_t item, const PortItems& in) const {
-    if (in_place_of >= 0) {
-      const std::vector<Item>& items = in[static_cast<std::size_t>(in_place_of)];
-      const Image* image = item < items.size() ? items[item].image() : nullptr;
-      const bool fits = image && image->size() == shape.size && info(image->type()).channels == info(shape.type).channels &&
-                        info(image->type()).format == info(shape.type).format;
-      if (fits && image->buffer().unique()) return image->as(shape.type);
-    }
-    return Image(shape.type, shape.size, pool);
-  }
-
-  Item place(std::size_t output, std::size_t item, const PortItems& in) const {
-    const Shape& shape = layout.outputs[output][item];
-    if (!shape.present) return {};
-    if (shape.type == QUELL_TYPE_VALUE) return Values(shape.value_count, pool);
-    return is_image(shape.type) ? Item(place_image(shape, layout.in_place_of[output], item, in)) : Item();
-  }
-
   void place_outputs(const PortItems& in, PortItems& out) const {
     out.resize(layout.outputs.size());
     for (std::size_t o = 0; o < out.size(); ++o) {
       out[o].resize(layout.outputs[o].size());
-      for (std::size_t i = 0; i < out[o].size(); ++i) out[o][i] = place(o, i, in);
+      for (std::size_t i = 0; i < out[o].size(); ++i)
+        out[o][i] = place_item(layout.outputs[o][i], item_in_place_of(in, layout.in_place_of[o], i), pool);
     }
   }
 

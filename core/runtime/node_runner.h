@@ -9,6 +9,7 @@
 #include "quell/image/item.h"
 #include "quell/plugin/pass_instance.h"
 #include "quell/runtime/host.h"
+#include "quell/runtime/raw_port.h"
 
 namespace quell {
 
@@ -19,8 +20,6 @@ struct NodeLayout {
   std::size_t scratch_bytes = 0;
   std::size_t slot_scratch_bytes = 0;
 };
-
-using PortItems = std::vector<std::vector<Item>>;  // items of each port
 
 /// Keeps its tables from frame to frame, so that after the first frames nothing is allocated. One frame at a time; several
 /// runners may share a pass.

@@ -49,6 +49,7 @@ struct SessionOptions {
   std::function<bool()> cancelled = {};                                 ///< asked often, from any thread
   std::function<void(const FrameReport&)> on_frame = {};  ///< after each frame of run(), in order, on the caller's thread
   Trace* trace = nullptr;                                 ///< told what ran when; may be null
+  bool fuse = true;  ///< nodes that work row by row run together where that saves memory traffic; the results are the same
 };
 
 struct SessionState;

@@ -32,7 +32,7 @@ bool SessionState::needs_plan(const InputShapes& shapes) const {
 
 void SessionState::plan_for(const InputShapes& shapes) {
   if (!needs_plan(shapes)) return;
-  Plan plan = make_plan(graph, shapes, options.dumps);
+  Plan plan = make_plan(graph, shapes, options.dumps, options.fuse);
   const Window chosen = choose_window(plan, static_cast<int>(executor.slots()), options.frames_in_flight, options.memory);
   auto next = std::make_unique<PlanState>(std::move(plan), chosen.frames, pool, options.cuts);
   if (running && options.log) options.log(QUELL_LOG_INFO, "the size of the inputs changed: history starts anew");
@@ -51,7 +51,7 @@ Lane& SessionState::lane(std::size_t index) {
 
 void report_nodes(FrameReport& report, const Lane& lane) {
   report.node_seconds = lane.node_seconds();
-  const int failed = lane.failed_step();
+  const int failed = lane.failed_node();
   if (failed < 0) return;
   report.ok = false;
   report.node = lane.name(failed);

@@ -29,7 +29,7 @@ std::vector<std::pair<std::string, Item>> compute_frame(Lane& lane, PlanState& s
   std::vector<std::pair<std::string, Item>> results;
   for (std::size_t i = 0; i < state.wiring.results.size(); ++i)
     results.emplace_back(state.wiring.results[i].first, lane.result(i));
-  const bool ok = lane.failed_step() < 0;
+  const bool ok = lane.failed_node() < 0;
   const std::string error = ok ? "" : lane.error();
   lane.clear();
   if (!ok) throw Error(Fault::frame, "", error);

@@ -62,8 +62,10 @@ std::size_t available_memory() {
 
 Window choose_window(const Plan& plan, int threads, int frames, std::size_t memory) {
   Window window;
-  for (std::size_t step = 0; step < plan.nodes.size(); ++step)
-    window.bytes_per_frame = std::max(window.bytes_per_frame, add(plan.alive_bytes[step], slot_scratch(plan, step, threads)));
+  for (std::size_t step = 0; step < plan.turns.size(); ++step) {
+    const std::size_t alive = plan.alive_bytes[static_cast<std::size_t>(plan.turns[step].nodes.front())];
+    window.bytes_per_frame = std::max(window.bytes_per_frame, add(alive, thread_memory(plan, step, threads)));
+  }
   window.bytes_per_frame = std::max(window.bytes_per_frame, plan.frame_bytes);
   window.fixed_bytes = plan.history_bytes;
   for (const InitialConstant& constant : Wiring(plan).constants)
@@ -99,9 +101,13 @@ Window choose_window(const Plan& plan, int threads, int frames, std::size_t memo
   return window;
 }
 
-std::size_t slot_scratch(const Plan& plan, std::size_t step, int threads) {
-  const std::size_t line = (plan.nodes[step].slot_scratch_bytes + 63) / 64 * 64;
-  return line > SIZE_MAX / static_cast<std::size_t>(threads) ? SIZE_MAX : line * static_cast<std::size_t>(threads);
+std::size_t thread_memory(const Plan& plan, std::size_t step, int threads) {
+  const auto lines = [](std::size_t bytes) { return (bytes + 63) / 64 * 64; };
+  std::size_t scratch = 0;  // the nodes of a thread take turns
+  for (const int position : plan.turns[step].nodes)
+    scratch = std::max(scratch, lines(plan.nodes[static_cast<std::size_t>(position)].slot_scratch_bytes));
+  const std::size_t bytes = add(scratch, lines(plan.turns[step].window_bytes)), count = static_cast<std::size_t>(threads);
+  return bytes > SIZE_MAX / count ? SIZE_MAX : bytes * count;
 }
 
 }  // namespace quell

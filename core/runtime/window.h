@@ -11,8 +11,9 @@ namespace quell {
 /// Bytes that this process may have: the machine's memory, or less where a control group says so.
 std::size_t available_memory();
 
-/// Scratch memory of all threads together for one run of a node; `step` is a position in Plan::nodes.
-std::size_t slot_scratch(const Plan& plan, std::size_t step, int threads);
+/// What all threads together need for themselves while a step, a position in Plan::turns, runs: scratch memory, and the windows
+/// of fused nodes.
+std::size_t thread_memory(const Plan& plan, std::size_t step, int threads);
 
 struct Window {
   int frames = 1;                   ///< most frames in flight, from reading to writing

@@ -24,20 +24,25 @@ class Builder {
       lines_[plan_.histories[line].from] = static_cast<int>(line);
       wiring_.lines[at(value_of(plan_.histories[line].from))].push_back(static_cast<int>(line));
     }
-    for (std::size_t step = 0; step < plan_.nodes.size(); ++step) wire(static_cast<int>(step));
+    wiring_.steps.resize(plan_.turns.size());
+    for (const PlannedTurn& turn : plan_.turns)
+      for (const int position : turn.nodes) wire(position);
   }
 
  private:
-  const Node& node(int step) const { return plan_.graph->nodes[at(plan_.nodes[at(step)].node)]; }
+  const Node& node(int position) const { return plan_.graph->nodes[at(plan_.nodes[at(position)].node)]; }
 
   void number_values() {
     for (std::size_t input = 0; input < plan_.inputs.size(); ++input) add_value({-1, static_cast<int>(input), 0}, -1);
-    for (std::size_t step = 0; step < plan_.nodes.size(); ++step) {
-      const PlannedNode& planned = plan_.nodes[step];
-      wiring_.steps.emplace_back().first_output = static_cast<int>(producers_.size());
+    steps_.resize(plan_.nodes.size());
+    for (std::size_t step = 0; step < plan_.turns.size(); ++step)
+      for (const int position : plan_.turns[step].nodes) steps_[at(position)] = static_cast<int>(step);
+    for (std::size_t position = 0; position < plan_.nodes.size(); ++position) {
+      const PlannedNode& planned = plan_.nodes[position];
+      wiring_.nodes.emplace_back().first_output = static_cast<int>(producers_.size());
       for (std::size_t port = 0; port < planned.outputs.size(); ++port)
         for (std::size_t item = 0; item < planned.outputs[port].size(); ++item)
-          add_value({planned.node, static_cast<int>(port), static_cast<int>(item)}, static_cast<int>(step));
+          add_value({planned.node, static_cast<int>(port), static_cast<int>(item)}, static_cast<int>(position));
     }
     wiring_.readers.resize(producers_.size());
     wiring_.lines.resize(producers_.size());
@@ -54,73 +59,81 @@ class Builder {
     return found == values_.end() ? -1 : found->second;
   }
 
-  void wire(int step) {
-    for (const std::vector<Edge>& port : node(step).inputs) {
-      std::vector<Fetch>& fetches = wiring_.steps[at(step)].fetches.emplace_back();
-      for (const Edge& edge : port) fetches.push_back(fetch(step, edge));
+  void wire(int position) {
+    for (const std::vector<Edge>& port : node(position).inputs) {
+      std::vector<Fetch>& fetches = wiring_.nodes[at(position)].fetches.emplace_back();
+      for (const Edge& edge : port) fetches.push_back(fetch(position, edge));
     }
-    wire_resets(step);
+    wire_resets(position);
   }
 
-  void wire_resets(int step) {
-    WiredStep& wired = wiring_.steps[at(step)];
+  void wire_resets(int position) {
+    WiredNode& wired = wiring_.nodes[at(position)];
     int longest = 0;
     for (const std::vector<Fetch>& port : wired.fetches)
       for (const Fetch& fetch : port) longest = std::max(longest, fetch.line >= 0 ? fetch.delay : 0);
     if (longest == 0) return;
-    for (const Endpoint& endpoint : node(step).resets) {
+    for (const Endpoint& endpoint : node(position).resets) {
       const int value = plan_.shape(endpoint).present ? value_of(endpoint) : -1;
       if (value < 0) continue;
       wired.resets.push_back(reset(value));
       const int producer = producers_[at(value)];
       if (producer < 0) continue;  // inputs are there when a frame begins
-      need(step, producer);
-      wired.reset_waits.push_back({producer, longest});
-      wiring_.steps[at(producer)].resets_for.push_back({step, longest});
+      need(position, producer);
+      const int step = steps_[at(position)], yields = steps_[at(producer)];
+      wiring_.steps[at(step)].reset_waits.push_back({yields, longest});
+      wiring_.steps[at(yields)].resets_for.push_back({step, longest});
     }
   }
 
   int reset(int value) {
     const auto found = std::ranges::find(wiring_.resets, value, &WiredReset::value);
     const auto index = static_cast<int>(found - wiring_.resets.begin());
-    if (found == wiring_.resets.end()) wiring_.resets.push_back({value, producers_[at(value)]});
+    if (found == wiring_.resets.end()) wiring_.resets.push_back({value, step_of(value)});
     return index;
   }
 
-  Fetch fetch(int step, const Edge& edge) {
+  // -1 for graph inputs.
+  int step_of(int value) const { return producers_[at(value)] < 0 ? -1 : steps_[at(producers_[at(value)])]; }
+
+  Fetch fetch(int position, const Edge& edge) {
     Fetch fetch;
     fetch.planned.present = false;
     if (!edge.from.is_nothing()) fetch.planned = plan_.shape(edge.from);
     if (edge.delay == 0) {
-      fetch.value = value_of(edge.from);
-      read(step, fetch.value);
+      fetch.value = read(position, value_of(edge.from));
       return fetch;
     }
     if (const auto line = lines_.find(edge.from); edge.delay > 0 && line != lines_.end()) {
       fetch.line = line->second;
       fetch.delay = edge.delay;
-      wait(step, producers_[at(value_of(edge.from))], edge.delay);
+      wait(steps_[at(position)], step_of(value_of(edge.from)), edge.delay);
     }
     if (edge.delay < 0 && fetch.planned.present) fetch.ahead = ahead(edge.from.port, -edge.delay);
-    if (edge.initial.kind == Initial::Kind::endpoint) {
-      fetch.initial = value_of(edge.initial.endpoint);
-      read(step, fetch.initial);
-    }
-    if (edge.initial.kind == Initial::Kind::constant) fetch.constant = constant(step, edge);
+    if (edge.initial.kind == Initial::Kind::endpoint) fetch.initial = read(position, value_of(edge.initial.endpoint));
+    if (edge.initial.kind == Initial::Kind::constant) fetch.constant = constant(position, edge);
     return fetch;
   }
 
-  void read(int step, int value) {
-    if (value < 0) return;
+  // The value that is to be fetched; none of what a fused node yields, since whoever runs these knows where it is.
+  int read(int position, int value) {
+    if (value < 0) return -1;
+    const int producer = producers_[at(value)];
+    if (producer >= 0) need(position, producer);
+    if (producer >= 0 && steps_[at(producer)] == steps_[at(position)]) return -1;
     ++wiring_.readers[at(value)];
-    if (producers_[at(value)] >= 0) need(step, producers_[at(value)]);
+    return value;
   }
 
-  void need(int step, int producer) {
-    std::vector<int>& needs = wiring_.steps[at(step)].needs;
-    if (std::ranges::find(needs, producer) != needs.end()) return;
-    needs.push_back(producer);
-    wiring_.steps[at(producer)].feeds.push_back(step);
+  void need(int position, int producer) {
+    const auto add = [](std::vector<int>& list, int index) {
+      if (std::ranges::find(list, index) == list.end()) list.push_back(index);
+    };
+    add(wiring_.nodes[at(position)].needs, producer);
+    const int step = steps_[at(position)], yields = steps_[at(producer)];
+    if (step == yields) return;
+    add(wiring_.steps[at(step)].needs, yields);
+    add(wiring_.steps[at(yields)].feeds, step);
   }
 
   void wait(int step, int producer, int delay) {
@@ -139,11 +152,11 @@ class Builder {
     return index;
   }
 
-  int constant(int step, const Edge& edge) {
+  int constant(int position, const Edge& edge) {
     Shape shape = edge.from.is_nothing() ? Shape{} : plan_.shape(edge.from);
     shape.type = plan_.graph->type(edge.from);
     // The source of a pruned edge has no size; its reader's other images tell it.
-    if (!shape.present) shape.size = image_size(node(step));
+    if (!shape.present) shape.size = image_size(node(position));
     wiring_.constants.push_back({shape, edge.initial.constant});
     return static_cast<int>(wiring_.constants.size()) - 1;
   }
@@ -164,7 +177,8 @@ class Builder {
   const Plan& plan_;
   Wiring& wiring_;
   std::map<Endpoint, int> values_, lines_;
-  std::vector<int> producers_;  // of each value; -1 for graph inputs
+  std::vector<int> producers_;  // node of each value; -1 for graph inputs
+  std::vector<int> steps_;      // of each node
 };
 
 }  // namespace

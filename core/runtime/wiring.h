@@ -20,22 +20,26 @@ struct Fetch {
   int constant = -1;  ///< index into Wiring::constants, for the same
 };
 
-/// A node waits for another's result of an earlier frame.
+struct WiredNode {
+  std::vector<std::vector<Fetch>> fetches;  ///< for each item of each input port; nothing of what a fused node yields
+  int first_output = 0;                     ///< value of the first item of the first output; the others follow
+  std::vector<int> needs;                   ///< nodes of the same frame
+  std::vector<int> resets;                  ///< indices into Wiring::resets: what its history ends with
+};
+
+/// A step waits for another's result of an earlier frame.
 struct DelayedWait {
   int step = 0;
   int delay = 0;
 };
 
 struct WiredStep {
-  std::vector<std::vector<Fetch>> fetches;  ///< for each item of each input port
-  int first_output = 0;                     ///< value of the first item of the first output; the others follow
-  std::vector<int> needs;                   ///< steps of the same frame
-  std::vector<int> feeds;                   ///< the other way round
-  std::vector<DelayedWait> waits;           ///< steps of earlier frames
-  std::vector<DelayedWait> awaited_by;      ///< the other way round
-  std::vector<int> resets;                  ///< indices into Wiring::resets: what its history ends with
-  std::vector<DelayedWait> reset_waits;     ///< steps that reset it: of all frames less than `delay` back
-  std::vector<DelayedWait> resets_for;      ///< the other way round
+  std::vector<int> needs;                ///< steps of the same frame
+  std::vector<int> feeds;                ///< the other way round
+  std::vector<DelayedWait> waits;        ///< steps of earlier frames
+  std::vector<DelayedWait> awaited_by;   ///< the other way round
+  std::vector<DelayedWait> reset_waits;  ///< steps that reset it: of all frames less than `delay` back
+  std::vector<DelayedWait> resets_for;   ///< the other way round
 };
 
 /// An input that is looked at before its turn.
@@ -56,8 +60,9 @@ struct InitialConstant {
 };
 
 struct Wiring {
-  /// A step is a position in Plan::nodes. Values are the graph's inputs, then the outputs of the steps, item by item.
-  std::vector<WiredStep> steps;
+  /// By position in Plan::nodes. Values are the graph's inputs, then the outputs of the nodes, item by item.
+  std::vector<WiredNode> nodes;
+  std::vector<WiredStep> steps;         ///< a step is a position in Plan::turns
   std::vector<int> readers;             ///< of each value: how often it is fetched in its frame, and 1 if it is a result
   std::vector<std::vector<int>> lines;  ///< of each value: the lines of the history that keep it
   std::vector<std::pair<std::string, int>> results;  ///< name and value, as Plan::results()

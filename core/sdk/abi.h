@@ -6,7 +6,9 @@
 // Rules that hold for the whole interface:
 //  - Every struct starts with `struct_size`, the size its writer compiled with. A reader uses a field only when the size covers
 //    it. Elements of an array lie `struct_size` of the first element apart (QUELL_AT), so that structs can grow at the end.
-//  - A plugin loads when its major version equals the host's and its minor version is not newer.
+//  - A plugin loads when its major version equals the host's and its minor version is not newer. The minor version rises with
+//    everything that is added and that a plugin may use: a function of the host, a field, a type, a flag. An older host would
+//    not know it, and says so.
 //  - The host owns every buffer. No exception, no std type and no ownership crosses. Strings are UTF-8, zero-terminated.
 //  - A pass keeps nothing between frames, and may be run on several frames at once.
 #ifndef QUELL_SDK_ABI_H
@@ -20,7 +22,7 @@ extern "C" {
 #endif
 
 #define QUELL_ABI_MAJOR 1u
-#define QUELL_ABI_MINOR 0u
+#define QUELL_ABI_MINOR 1u  // 1: quell_inference::by_rows, QUELL_PORT_ANY_SIZE
 #define QUELL_ABI_VERSION ((QUELL_ABI_MAJOR << 16) | QUELL_ABI_MINOR)
 
 // Element i of an array whose elements may be larger than this header knows.
@@ -220,6 +222,13 @@ typedef struct quell_inference {
   int32_t* in_place_of;       // for each output: the input whose memory it may take over; prefilled -1 (needs radius 0)
   size_t scratch_bytes;       // for the whole frame; prefilled 0
   size_t slot_scratch_bytes;  // for each slot of parallel_for; prefilled 0
+  // Not 0 promises that process touches images in loops of parallel_for alone, each over all rows of its outputs, which have one
+  // height: for rows [begin, end) a loop writes just these rows of the outputs and reads no row of an input farther off than the
+  // radius, and what becomes of a row depends neither on where chunks begin and end nor on their numbers. The host may then call
+  // process several times for a frame, each time for some rows: its parallel_for leaves out the others, and only the rows that
+  // these need are there in the images, whose sizes and coordinates are those of the whole. Needs scratch_bytes 0, and images as
+  // outputs. Prefilled 0.
+  uint32_t by_rows;
 } quell_inference;
 
 typedef struct quell_exec {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <exception>
 #include <mutex>
 #include <span>
@@ -73,6 +74,12 @@ class Inference {
   }
   void set_scratch(std::size_t bytes) { raw_.scratch_bytes = bytes; }
   void set_slot_scratch(std::size_t bytes) { raw_.slot_scratch_bytes = bytes; }
+  /// Promises that run() touches images within parallel_rows() alone, over the rows of its outputs, and that each row depends by
+  /// itself on rows of the inputs no farther off than the radius. The host may then run it on some rows at a time, together with
+  /// the nodes before and behind it, so that what passes between them stays in the cache. See quell_inference::by_rows.
+  void set_by_rows() {
+    if (raw_.struct_size >= offsetof(quell_inference, by_rows) + sizeof(raw_.by_rows)) raw_.by_rows = 1;
+  }
 
  private:
   const quell_port_shape& in(std::string_view name) const {

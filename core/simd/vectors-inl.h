@@ -69,9 +69,9 @@ HWY_INLINE V3 if_then_else(hn::Mask<D> mask, V3 yes, V3 no) {
 HWY_INLINE V dot(V3 a, V3 b) { return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::Mul(a.x, b.x))); }
 HWY_INLINE V dot_add(V3 a, V3 b, V c) { return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::MulAdd(a.x, b.x, c))); }
 
-// exp2(x) is 2^x for x <= 0, -infinity included: error 3.8e-6, exactly 1 at 0; below -126.5, where floats lose their precision,
-// it is at most 2^-126, and exactly 0 from -150 on. exp2_negative(e, gain, limit) is 2^-(gain e) likewise, for e >= 0; `limit` is
-// 127 / gain. To its error comes that of a rounded product, 6e-8 gain e.
+// exp2(x) is 2^x for x <= 0, -infinity but not NaN included: error 3.8e-6, exactly 1 at 0; below -126.5, where floats lose their
+// precision, it is at most 2^-126, and exactly 0 from -150 on. exp2_negative(e, gain, limit) is 2^-(gain e) likewise, for e >= 0;
+// `limit` is 127 / gain. To its error comes that of a rounded product, 6e-8 gain e.
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
 // 2^x = 2^f 2^floor(x), where the unit yields f and applies the floor in one operation each. The fit is of 2^f on [0, 1],
 // relative, the constant 1 held.

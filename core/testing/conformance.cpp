@@ -110,6 +110,20 @@ Violations check_chunks(const MakePass& make) {
   return violations;
 }
 
+Violations check_rows(const MakePass& make) {
+  Violations violations;
+  contained(violations, "row by row", [&] {
+    PassTest pass = make();
+    connect(pass, kOddSize);
+    const Results want = run(pass.next_frame(0));
+    for (const int rows : {1, 3, 8}) {
+      pass.rows_at_a_time(rows);
+      expect_same(want, run(pass.next_frame(0)), "when it runs on " + std::to_string(rows) + " rows at a time", violations);
+    }
+  });
+  return violations;
+}
+
 Violations check_purity(const MakePass& make) {
   Violations violations;
   contained(violations, "when it runs again", [&] {

@@ -30,6 +30,7 @@
   QUELL_CONFORMANCE_CASE_(suite, id, GivesTheSameBitsInPlace, check_in_place, __VA_ARGS__)              \
   QUELL_CONFORMANCE_CASE_(suite, id, GivesTheSameBitsForAnyStrides, check_strides, __VA_ARGS__)         \
   QUELL_CONFORMANCE_CASE_(suite, id, GivesTheSameBitsForAnyThreadsAndChunks, check_chunks, __VA_ARGS__) \
+  QUELL_CONFORMANCE_CASE_(suite, id, GivesTheSameBitsRowByRow, check_rows, __VA_ARGS__)                 \
   QUELL_CONFORMANCE_CASE_(suite, id, KeepsNothingBetweenFrames, check_purity, __VA_ARGS__)              \
   QUELL_CONFORMANCE_CASE_(suite, id, RunsOrRefusesWithoutOptionalInputs, check_optional_inputs, __VA_ARGS__)
 

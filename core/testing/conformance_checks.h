@@ -29,6 +29,8 @@ Violations check_in_place(const MakePass& make);
 Violations check_strides(const MakePass& make);
 /// The same bits for any number of threads and any size of chunks.
 Violations check_chunks(const MakePass& make);
+/// The same bits when a pass that works row by row is run on some rows at a time, of which alone its outputs have memory.
+Violations check_rows(const MakePass& make);
 /// The same bits for the same inputs and frame number, whatever was computed in between.
 Violations check_purity(const MakePass& make);
 /// Without its optional inputs, each alone and all at once, it runs, or refuses with a reason before it runs.

@@ -40,7 +40,7 @@ const quell_pass_desc& find_pass(const quell_pass_desc* const* passes, std::uint
 struct PassTest::State {
   PassGraph graph;
   Registry registry;
-  int thread_count = 1;
+  int thread_count = 1, rows_at_a_time = 0;
   bool move_inputs = false;
   std::int64_t next_frame = 0;
 
@@ -80,6 +80,7 @@ struct PassTest::State {
     for (const auto& [port, items] : graph.inputs)
       for (std::size_t i = 0; i < items.size(); ++i) shapes[item_name(port, i)] = shape_of(items[i]);
     Plan plan = make_plan(parse_graph(source, registry), shapes);
+    if (rows_at_a_time > 0 && !plan.nodes.empty() && plan.nodes.front().by_rows) fuse_alone(plan);
     lane.reset();
     executor = make_executor(thread_count);
     services.executor = executor.get();
@@ -87,6 +88,21 @@ struct PassTest::State {
     lane = std::make_unique<Lane>(*running, services, pool, nullptr);
     planned_for = key;
     return running->plan;
+  }
+
+  // With windows as if others read each output around a pixel.
+  void fuse_alone(Plan& plan) const {
+    PlannedTurn& turn = plan.turns.front();
+    turn.ahead = {0};
+    turn.rows = turn.band = rows_at_a_time;
+    const PlannedNode& node = plan.nodes.front();
+    for (std::size_t port = 0; port < node.outputs.size(); ++port)
+      for (std::size_t item = 0; item < node.outputs[port].size(); ++item) {
+        const Shape& shape = node.outputs[port][item];
+        if (!shape.present) continue;
+        turn.windows.push_back({{node.node, static_cast<int>(port), static_cast<int>(item)}, turn.rows, true});
+        turn.window_bytes += Image::bytes_needed(shape.type, {shape.size.width, turn.rows});
+      }
   }
 
   const PlannedNode& planned() {
@@ -143,6 +159,11 @@ PassTest& PassTest::threads(int count) {
 }
 PassTest& PassTest::grain(int rows) {
   state_->services.force_grain = rows;
+  return *this;
+}
+PassTest& PassTest::rows_at_a_time(int rows) {
+  state_->rows_at_a_time = rows;
+  state_->running.reset();
   return *this;
 }
 PassTest& PassTest::fresh_memory(unsigned char byte) {

@@ -76,6 +76,9 @@ class PassTest {
   PassTest& threads(int count);
   /// Rows of every chunk, whatever the pass asks for; 0 as the pass asks.
   PassTest& grain(int rows);
+  /// Runs a pass that works row by row on so many rows at a time, as where it is fused with others: of its outputs nothing else
+  /// is there. 0: on all. Other passes run as ever.
+  PassTest& rows_at_a_time(int rows);
   /// What every byte of outputs and scratch holds before the pass runs; at first kNanByte, so that what is not written shows.
   PassTest& fresh_memory(unsigned char byte);
   static constexpr unsigned char kNanByte = 0xff;

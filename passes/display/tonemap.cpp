@@ -96,7 +96,10 @@ class TonemapPass final : public Pass {
           std::make_unique<OcioView>(OcioView::Choice{p.ocio_config.string(), p.ocio_colorspace, p.ocio_display, p.ocio_view});
   }
 
-  void infer(Inference& inference) const override { inference.set_in_place("color", "color"); }
+  void infer(Inference& inference) const override {
+    inference.set_by_rows();
+    inference.set_in_place("color", "color");
+  }
 
   void run(const Frame& frame) const override {
     const FloatImage in = frame.image("color");

@@ -1,8 +1,9 @@
 // Auto-exposure: the factor that brings the mean of the logarithm of luminance to a key, followed over time.
 // Source:  Reinhard et al., "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002, equations 1 and 2: key over the
-//          log-average of luminance. Adaptation: exponential, as in Pattanaik et al., "Time-Dependent Visual Adaptation for Fast
-//          Realistic Image Display", SIGGRAPH 2000.
-// Departs: the darkest and the brightest pixels are left out; luminance is counted in 64 steps a stop; adaptation is in stops.
+//          log-average of luminance. That adaptation takes time: Pattanaik et al., "Time-Dependent Visual Adaptation for Fast
+//          Realistic Image Display", SIGGRAPH 2000, whose model of the eye is another one.
+// Departs: the darkest and the brightest pixels are left out; luminance is counted in 64 steps a stop; adaptation is exponential,
+//          in stops, and as fast to light as to darkness.
 // Cost:    a dot product and a count a pixel.
 #include <algorithm>
 #include <atomic>
@@ -44,8 +45,9 @@ const PassInfo kInfo{
         "Exposures of tone mappers are in stops: log2 of this.",
     .source =
         "Reinhard et al., \"Photographic Tone Reproduction for Digital Images\", SIGGRAPH 2002, equations 1 and 2, key 0.18. "
-        "Adaptation: Pattanaik et al., \"Time-Dependent Visual Adaptation for Fast Realistic Image Display\", SIGGRAPH 2000. "
-        "Departs: percentiles are left out, instead of a small number being added before the logarithm.",
+        "That adaptation takes time: Pattanaik et al., \"Time-Dependent Visual Adaptation for Fast Realistic Image Display\", "
+        "SIGGRAPH 2000. Departs: percentiles are left out, instead of a small number being added before the logarithm; one "
+        "exponential in stops, where the eye adapts faster to light than to darkness.",
     .inputs = {{"color", kColor, "what is to be exposed"}, {"previous", kValue, "the exposure of the frame before", true}},
     .outputs = {{"exposure", kValue, "the factor, one number"}},
 };

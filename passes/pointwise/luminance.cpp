@@ -21,6 +21,8 @@ class Luminance final : public Pass {
  public:
   explicit Luminance(const Params&) {}
 
+  void infer(Inference& inference) const override { inference.set_by_rows(); }
+
   void run(const Frame& frame) const override {
     const FloatImage color = frame.image("color");
     const FloatOutput out = frame.output("luminance");

@@ -39,6 +39,8 @@ class Merge final : public Pass {
  public:
   explicit Merge(const Params& params) : space_(params.space) {}
 
+  void infer(Inference& inference) const override { inference.set_by_rows(); }
+
   void run(const Frame& frame) const override {
     const FloatImage planes[] = {frame.image("first"), frame.image("second"), frame.image("third")};
     const FloatOutput out = frame.output("color");

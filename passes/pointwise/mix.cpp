@@ -35,6 +35,7 @@ class Mix final : public Pass {
   explicit Mix(const Params& params) : amount_(static_cast<float>(params.amount)) {}
 
   void infer(Inference& inference) const override {
+    inference.set_by_rows();
     inference.set_in_place("image", "a");
     if (inference.present("b") && inference.type("a") != inference.type("b"))
       throw std::runtime_error("a and b must be of one type");

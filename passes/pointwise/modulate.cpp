@@ -47,6 +47,7 @@ class Modulate final : public Pass {
   explicit Modulate(const Params& params) : floor_(static_cast<float>(params.floor)) {}
 
   void infer(Inference& inference) const override {
+    inference.set_by_rows();
     if (inference.count("albedo") != 1 && inference.count("albedo") != inference.count("color"))
       throw std::runtime_error("there must be one albedo, or as many as there are colors");
   }

@@ -39,6 +39,8 @@ class Split final : public Pass {
  public:
   explicit Split(const Params& params) : space_(params.space) {}
 
+  void infer(Inference& inference) const override { inference.set_by_rows(); }
+
   void run(const Frame& frame) const override {
     const FloatImage in = frame.image("image");
     const FloatOutput first = frame.output("first"), second = frame.output("second"), third = frame.output("third");

@@ -55,7 +55,10 @@ class DepthGradient final : public Pass {
  public:
   explicit DepthGradient(const Params& params) : differences_(params.differences) {}
 
-  void infer(Inference& inference) const override { inference.set_radius("depth", 1); }
+  void infer(Inference& inference) const override {
+    inference.set_by_rows();
+    inference.set_radius("depth", 1);
+  }
 
   void run(const Frame& frame) const override {
     const FloatImage depth = frame.image("depth");

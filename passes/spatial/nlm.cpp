@@ -50,8 +50,9 @@ const PassInfo kInfo{
         " variances V, V'. The variance is that of luminance, which is then compared; or an image of colors that has that of each"
         " channel, and channels are compared. F is the largest, over features, of (|f - f'|^2 - (W + min(W, W'))) / (k_feature^2"
         " max(tau, W, |grad f|^2)), with a feature's values f and f' at p and q, all its planes together, its variance W at p and"
-        " W' at q, 0 where none is given, and the gradient of central differences at p. Taps outside the image are left out, and"
-        " so are pixels of a patch that have no counterpart there.\n\n"
+        " W' at q, 0 where none is given, and the gradient of central differences at p, or of one-sided ones where a neighbor is"
+        " missing: outside the image, or, of a depth, without surface (1e10). Taps outside the image are left out, and so are"
+        " pixels of a patch that have no counterpart there. Variances below 0 count as 0.\n\n"
         "The variance decides all: it is that of the color as it comes in, after what was accumulated. Features should be of"
         " about the range 0 to 1 and free of noise, or have a variance: albedo and normals serve well. Of a feature that slopes,"
         " such as depth, k_feature pixels are tolerated.",
@@ -99,7 +100,8 @@ class Nlm final : public Pass {
     nlm::Images in{frame.image("color"), frame.image("variance"), {}, 0};
     for (std::size_t i = 0; i < frame.count("feature"); ++i)
       if (const FloatImage feature = frame.image("feature", i))  // one that is absent in this frame is left out
-        in.features[static_cast<std::size_t>(in.feature_count++)] = {feature, frame.image("feature_variance", i)};
+        in.features[static_cast<std::size_t>(in.feature_count++)] = {feature, frame.image("feature_variance", i),
+                                                                     frame.type("feature", i) == QUELL_TYPE_DEPTH};
     const FloatOutput out = frame.output("color");
     frame.parallel_rows(
         out.height,

@@ -47,6 +47,7 @@ struct Work {
 // Where the planes of a feature are in a tile; variance -1: none.
 struct FeaturePlanes {
   int first, channels, variance, per_tolerance;
+  bool is_depth;
 };
 struct Layout {
   std::array<FeaturePlanes, kMaxFeatures> features;
@@ -58,7 +59,7 @@ inline Layout make_layout(const Images& in) {
   for (int i = 0; i < in.feature_count; ++i) {
     const Feature& feature = in.features[static_cast<std::size_t>(i)];
     FeaturePlanes& planes = layout.features[static_cast<std::size_t>(i)];
-    planes = {layout.planes, feature.image.channels, -1, 0};
+    planes = {layout.planes, feature.image.channels, -1, 0, feature.is_depth};
     layout.planes += planes.channels;
     if (feature.variance) planes.variance = layout.planes++;
     planes.per_tolerance = layout.planes++;
@@ -95,9 +96,16 @@ void gather_plane(const FloatImage& in, int y, int c, Range columns, const Tile&
   std::copy(in.row(y, c) + columns.begin, in.row(y, c) + columns.end, tile.at(columns.begin, y, plane));
 }
 
+// The same of a variance, which is at least 0: distances are divided by it.
+void gather_variance(const FloatImage& in, int y, int c, Range columns, const Tile& tile, int plane) {
+  gather_plane(in, y, c, columns, tile, plane);
+  float* row = tile.at(columns.begin, y, plane);
+  for (int i = 0; i < columns.end - columns.begin; ++i) row[i] = std::max(row[i], 0.0F);
+}
+
 void gather_row(const Images& in, const Layout& layout, int y, Range columns, const Tile& tile) {
   const int channels = in.variance.channels;
-  for (int c = 0; c < channels; ++c) gather_plane(in.variance, y, c, columns, tile, 3 + c);
+  for (int c = 0; c < channels; ++c) gather_variance(in.variance, y, c, columns, tile, 3 + c);
   for (int c = 0; c < 3; ++c) gather_plane(in.color, y, c, columns, tile, c);
   for (int x = columns.begin; x < columns.end && channels == 1; x += lanes())  // into a plane that is else of variance
     store(luminance(load(in.color.row(y) + x, in.color.plane_stride)), columns.end - x, tile.at(x, y, 4));
@@ -105,22 +113,33 @@ void gather_row(const Images& in, const Layout& layout, int y, Range columns, co
     const Feature& feature = in.features[static_cast<std::size_t>(i)];
     const FeaturePlanes& planes = layout.features[static_cast<std::size_t>(i)];
     for (int c = 0; c < planes.channels; ++c) gather_plane(feature.image, y, c, columns, tile, planes.first + c);
-    if (planes.variance >= 0) gather_plane(feature.variance, y, 0, columns, tile, planes.variance);
+    if (planes.variance >= 0) gather_variance(feature.variance, y, 0, columns, tile, planes.variance);
   }
 }
 
-// 1 / (k^2 max(tau, variance, gradient^2)) of a feature at the pixels [begin, end) of row y.
+// The squared slope of a plane from one pixel to the next in one direction, by differences of `value` at the places before, at
+// and after a pixel. Pixels that show nothing have no slope: where one of them stands beside, the difference is from the pixel
+// itself.
+template <class Value>
+float squared_slope(int before, int at, int after, bool is_depth, const Value& value) {
+  const auto is_known = [&](int place) { return !is_depth || value(place) < QUELL_NO_SURFACE_DEPTH; };
+  if (!is_known(at)) return 0;
+  if (!is_known(before)) before = at;
+  if (!is_known(after)) after = at;
+  if (before == after) return 0;
+  const float slope = (value(after) - value(before)) / static_cast<float>(after - before);
+  return slope * slope;
+}
+
+// 1 / (k^2 max(tau, variance, gradient^2)) of a feature at the pixels of `columns` in row y.
 void find_tolerances(const Images& in, const Settings& s, const FeaturePlanes& planes, int y, Range columns, const Tile& tile) {
   const int above = std::max(y - 1, 0), below = std::min(y + 1, in.color.height - 1);
-  const float per_height = below > above ? 1.0F / static_cast<float>(below - above) : 0;
   for (int x = columns.begin; x < columns.end; ++x) {
     const int before = std::max(x - 1, 0), after = std::min(x + 1, in.color.width - 1);
-    const float per_width = after > before ? 1.0F / static_cast<float>(after - before) : 0;
     float gradient = 0;
     for (int c = planes.first; c < planes.first + planes.channels; ++c) {
-      const float across = (*tile.at(after, y, c) - *tile.at(before, y, c)) * per_width;
-      const float down = (*tile.at(x, below, c) - *tile.at(x, above, c)) * per_height;
-      gradient += across * across + down * down;
+      gradient += squared_slope(before, x, after, planes.is_depth, [&](int at) { return *tile.at(at, y, c); });
+      gradient += squared_slope(above, y, below, planes.is_depth, [&](int at) { return *tile.at(x, at, c); });
     }
     const float variance = planes.variance >= 0 ? *tile.at(x, y, planes.variance) : 0;
     *tile.at(x, y, planes.per_tolerance) = 1 / (s.k_feature_squared * std::max({s.tau, variance, gradient}));

@@ -12,6 +12,7 @@ inline constexpr int kMaxRadius = 32, kMaxPatchRadius = 8, kMaxFeatures = 8;
 
 struct Feature {
   FloatImage image, variance;  ///< variance may be absent
+  bool is_depth = false;       ///< pixels without surface, of depth 1e10, have no slope
 };
 
 /// Images of one size. The variance has one plane, of luminance, or three, of the channels.

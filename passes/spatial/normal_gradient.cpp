@@ -52,7 +52,10 @@ class NormalGradient final : public Pass {
  public:
   explicit NormalGradient(const Params& params) : differences_(params.differences) {}
 
-  void infer(Inference& inference) const override { inference.set_radius("normal", 1); }
+  void infer(Inference& inference) const override {
+    inference.set_by_rows();
+    inference.set_radius("normal", 1);
+  }
 
   void run(const Frame& frame) const override {
     const FloatImage normal = frame.image("normal");

@@ -43,8 +43,8 @@ const PassInfo kInfo{
         " they are fitted, evenly distributed noise between -noise and noise is added to each, a hash of the pixel's place,"
         " the feature and the frame's number. A feature that depends on those before it weighs 0.\n\n"
         "Blocks at the border are fitted to the pixels nearest to them that make a whole block. Pixels without surface (normal 0)"
-        " and such as are not finite do not count, and keep their color. Where fewer than four pixels a feature count, the color"
-        " becomes their mean.\n\n"
+        " and such as are not finite do not count, and keep their color; without normals background is not told, and counts with"
+        " whatever position it has. Where fewer than four pixels a feature count, the color becomes their mean.\n\n"
         "Give it demodulated, accumulated light: what features do not explain, such as shadows and textures, is blurred to a"
         " block's polynomial. Accumulating its results over frames, as its authors do, hides the blocks.",
     .source =

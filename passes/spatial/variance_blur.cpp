@@ -35,6 +35,7 @@ class VarianceBlur final : public Pass {
   explicit VarianceBlur(const Params& params) : renormalizes_(params.border == Border::renormalize) {}
 
   void infer(Inference& inference) const override {
+    inference.set_by_rows();
     inference.set_radius("variance", 1);
     inference.set_slot_scratch((static_cast<std::size_t>(inference.size("variance").width) + 2) * sizeof(float));
   }

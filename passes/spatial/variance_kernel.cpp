@@ -1,8 +1,9 @@
-// Most rows of a sequence have a long history throughout: they are one subtraction a pixel. For others the rows of the window are
-// first copied into scratch memory, with an apron of taps that do not count, so that the loop over the taps has no border.
+// Most pixels of a sequence have a long history: they are one subtraction. For others what lies around them is first copied into
+// scratch memory, block by block, with an apron of taps that do not count, so that the loop over the taps has no border.
 #include "passes/spatial/variance_kernel.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 
 #undef HWY_TARGET_INCLUDE
@@ -25,18 +26,26 @@ constexpr float kSmallestGradient = 1e-8F;  // Falcor's
 constexpr float kFar = 1e18F;               // as luminance: a tap that does not count; its weight is exactly 0
 constexpr float kSmallestFactor = 1e-15F;   // with it luminances do not matter, but kFar does
 
+constexpr int kBlock = 64;  // pixels of a row that are copied at a time
+
+inline std::ptrdiff_t stride(int width, int radius) { return width + 2 * radius + 32; }
+inline int blocks(int width) { return (width + kBlock - 1) / kBlock; }
+inline std::size_t row_floats(int width, int radius) {
+  return static_cast<std::size_t>(kPlanes) * static_cast<std::size_t>(stride(width, radius));
+}
+
 // Rows around row y, each of kPlanes planes. A row stays where it is while the window moves on.
 struct Window {
   float* data;
   std::ptrdiff_t stride;  // from plane to plane
-  int radius, y;
-  float* row(int dy) const {
-    const int rows = 2 * radius + 1;
-    return data + ((y + dy + radius) % rows) * kPlanes * stride + radius;
+  int radius, y, width;
+  int index(int dy) const { return (y + dy + radius) % (2 * radius + 1); }
+  float* row(int dy) const { return data + index(dy) * kPlanes * stride + radius; }
+  // For each block of a row whether it is there.
+  std::uint8_t* is_there(int dy) const {
+    return reinterpret_cast<std::uint8_t*>(data + (2 * radius + 1) * kPlanes * stride) + index(dy) * blocks(width);
   }
 };
-
-inline std::ptrdiff_t stride(int width, int radius) { return width + 2 * radius + 32; }
 
 }  // namespace quell::variance
 #endif
@@ -60,12 +69,11 @@ void fill_outside(const Window& window, int begin, int end, float* row) {
     std::fill(row + plane * window.stride + begin, row + plane * window.stride + end, outside(plane));
 }
 
-// Row y of the images, or a row of taps that do not count where it lies outside. Guides that are absent are the same everywhere.
-void gather_row(const Images& in, const Settings& s, int y, const Window& window, float* to) {
-  const int width = in.color.width;
-  if (y < 0 || y >= in.color.height) return fill_outside(window, -window.radius, width + window.radius + kMaxLanes, to);
+// A block of row y of the images. Guides that are absent are the same everywhere.
+void gather_block(const Images& in, const Settings& s, int y, int block, const Window& window, float* to) {
+  const int width = window.width;
   const D d;
-  for (int x = 0; x < width; x += lanes()) {
+  for (int x = block * kBlock; x < std::min((block + 1) * kBlock, width); x += lanes()) {
     Mask counts = hn::FirstN(d, static_cast<std::size_t>(width - x));
     const V depth = in.depth ? hn::LoadU(d, in.depth.row(y) + x) : zero();
     if (in.depth) counts = hn::And(counts, hn::Lt(depth, set(kNoSurface)));
@@ -80,8 +88,30 @@ void gather_row(const Images& in, const Settings& s, int y, const Window& window
     put(in.depth_gradient ? depth : zero(), kDepth);
     put(normal.x, kNormal), put(normal.y, kNormal + 1), put(normal.z, kNormal + 2);
   }
-  fill_outside(window, -window.radius, 0, to);
-  fill_outside(window, width, width + window.radius + kMaxLanes, to);
+  if (block == 0) fill_outside(window, -window.radius, 0, to);
+  if (block == blocks(width) - 1) fill_outside(window, width, width + window.radius + kMaxLanes, to);
+}
+
+// Nothing of the row y + dy is there yet; outside of the image it is one of taps that do not count.
+void begin_row(const Images& in, const Window& window, int dy) {
+  const int y = window.y + dy;
+  const bool is_outside = y < 0 || y >= in.color.height;
+  if (is_outside) fill_outside(window, -window.radius, window.width + window.radius + kMaxLanes, window.row(dy));
+  std::fill_n(window.is_there(dy), blocks(window.width), is_outside ? std::uint8_t{1} : std::uint8_t{0});
+}
+
+// Sees to it that what the pixels from x on have around them is there.
+void gather_around(const Images& in, const Settings& s, int x, const Window& window) {
+  const int first = std::max(x - window.radius, 0) / kBlock;
+  const int last = std::min(x + lanes() - 1 + window.radius, window.width - 1) / kBlock;
+  for (int dy = -window.radius; dy <= window.radius; ++dy) {
+    std::uint8_t* is_there = window.is_there(dy);
+    for (int block = first; block <= last; ++block)
+      if (!is_there[block]) {
+        gather_block(in, s, window.y + dy, block, window, window.row(dy));
+        is_there[block] = 1;
+      }
+  }
 }
 
 // Where the window's rows begin.
@@ -129,19 +159,19 @@ HWY_INLINE Sums sum_taps(const Settings& s, const Window& window, const Rows& ro
 
 template <bool kWideNormals, bool kFiltersColor>
 void estimate_row(const Images& in, const Settings& s, int y, const FloatOutput& variance, const FloatOutput& color,
-                  const Window& window, int& gathered) {
+                  const Window& window, int& begun) {
   const D d;
-  for (int row = std::max(y - s.radius, gathered); row <= y + s.radius; ++row)
-    gather_row(in, s, row, window, window.row(row - y));
-  gathered = y + s.radius + 1;
+  for (int row = std::max(y - s.radius, begun); row <= y + s.radius; ++row) begin_row(in, window, row - y);
+  begun = y + s.radius + 1;
   Rows rows{};
   for (int dy = -s.radius; dy <= s.radius; ++dy) rows[static_cast<std::size_t>(dy + s.radius)] = window.row(dy);
   for (int x = 0; x < variance.width; x += lanes()) {
     const int count = variance.width - x;
     const V length = in.length ? hn::LoadU(d, in.length.row(y) + x) : set(1.0F);
-    const float* center = window.row(0) + x;
-    const Mask counts = hn::Lt(get(window, center, kLuminance), set(kFar));
-    const Mask young = hn::And(hn::Lt(length, set(s.min_length)), counts);
+    Mask young = hn::And(hn::Lt(length, set(s.min_length)), hn::FirstN(d, static_cast<std::size_t>(count)));
+    if (hn::AllFalse(d, young)) continue;
+    gather_around(in, s, x, window);
+    young = hn::And(young, hn::Lt(get(window, window.row(0) + x, kLuminance), set(kFar)));
     if (hn::AllFalse(d, young)) continue;
     const V one = set(1.0F);
     V minus_steepness = zero();
@@ -160,7 +190,7 @@ void estimate_row(const Images& in, const Settings& s, int y, const FloatOutput&
 }
 
 void VarianceRow(const Images& in, const Settings& s, int y, const FloatOutput& variance, const FloatOutput& color,
-                 float* scratch, int& gathered) {
+                 float* scratch, int& begun) {
   const D d;
   const int width = variance.width;
   for (int c = 0; c < 3; ++c)
@@ -174,10 +204,10 @@ void VarianceRow(const Images& in, const Settings& s, int y, const FloatOutput& 
     any_young = hn::Or(any_young, hn::And(inside, young));
   }
   if (hn::AllFalse(d, any_young)) return;
-  const Window window{scratch, stride(width, s.radius), s.radius, y};
+  const Window window{scratch, stride(width, s.radius), s.radius, y, width};
   auto* estimate = s.wide_normals ? estimate_row<true, false> : estimate_row<false, false>;
   if (s.filter_color) estimate = s.wide_normals ? estimate_row<true, true> : estimate_row<false, true>;
-  estimate(in, s, y, variance, color, window, gathered);
+  estimate(in, s, y, variance, color, window, begun);
 }
 
 }  // namespace quell::variance::HWY_NAMESPACE
@@ -190,13 +220,13 @@ HWY_EXPORT(VarianceRow);
 
 std::size_t scratch_bytes(int width, int radius) {
   const auto rows = static_cast<std::size_t>(2 * radius + 1);
-  return rows * static_cast<std::size_t>(kPlanes) * static_cast<std::size_t>(stride(width, radius)) * sizeof(float);
+  return rows * (row_floats(width, radius) * sizeof(float) + static_cast<std::size_t>(blocks(width)));
 }
 
 void variance_rows(const Images& in, const Settings& settings, int y0, int y1, const FloatOutput& variance,
                    const FloatOutput& color, float* scratch) {
-  int gathered = y0 - settings.radius;  // rows before this one are in scratch memory, or are not needed
-  for (int y = y0; y < y1; ++y) HWY_DYNAMIC_DISPATCH(VarianceRow)(in, settings, y, variance, color, scratch, gathered);
+  int begun = y0 - settings.radius;  // rows before this one are in scratch memory, or are not needed
+  for (int y = y0; y < y1; ++y) HWY_DYNAMIC_DISPATCH(VarianceRow)(in, settings, y, variance, color, scratch, begun);
 }
 
 }  // namespace quell::variance

@@ -33,14 +33,18 @@ const PassInfo kInfo{
         "sigma(fast) + k_color sigma(color), and populations' standard deviations of luminance in the window: confidence = 1 "
         "- min(1, sensitivity max(0, |l - m| - t) / (max(l, m, 0) + t + 1e-6)). Without the new frame m is the mean of the "
         "fast history, and k_color does not matter. The new length is 1 + confidence (length - 1).\n\n"
+        "The tolerances are RELAX's, whose light has been filtered before. Of light with a path or two a pixel the deviation is "
+        "as large as the light, and no change exceeds 4.5 of it; but a mean of n pixels errs by 1 / sqrt(n) of it, so that in a "
+        "window of 7 x 7 a k_color of 0.5 and hardly any k_fast tell changes from noise, as asvgf_lite has it.\n\n"
         "The confidence is what temporal_blend asks for; the length is what the next frame's average would begin with. All "
         "images are at this frame's pixels. Pixels outside the image and without surface (depth 1e10) do not count, and "
         "pixels without surface have confidence 1.",
     .source =
         "NVIDIA Real-Time Denoisers (NRD) 4.17, RELAX, history clamping, the part that resets: 5 x 5, 4.5 spatial and 0.5 "
         "temporal sigma, and half of an amount of 0.5. Departs: NRD moves both histories toward the new frame by 1 - "
-        "confidence, which is what an average by the confidence does; the form without the new frame is quell's; at the "
-        "border NRD repeats pixels.",
+        "confidence, which is what an average by the confidence does; its deviation of the fast history is that of (R + 2 G + "
+        "B) / 4, its slow history has had its share of the new frame; the form without the new frame is quell's; at the border "
+        "NRD repeats pixels.",
     .inputs = {{"slow", kColor, "the history that may lag behind"},
                {"fast", kColor, "an average of fewer frames"},
                {"color", kColor, "the new frame", true},
@@ -60,6 +64,7 @@ class Antilag final : public Pass {
                   .max_length = static_cast<float>(p.max_length)} {}
 
   void infer(Inference& inference) const override {
+    inference.set_by_rows();
     for (const char* input : {"fast", "color", "depth"}) inference.set_radius(input, settings_.radius);
     if (inference.present("length")) inference.set_in_place("length", "length");
   }

@@ -44,6 +44,7 @@ class DualMotion final : public Pass {
   explicit DualMotion(const Params&) {}
 
   void infer(Inference& inference) const override {
+    inference.set_by_rows();
     inference.set_in_place("motion", "motion");
     for (const char* input : {"forward_motion", "previous_id"}) inference.set_unbounded(input);
   }

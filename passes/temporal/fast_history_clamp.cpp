@@ -62,6 +62,7 @@ class FastHistoryClamp final : public Pass {
                   .min_length = static_cast<float>(p.min_length)} {}
 
   void infer(Inference& inference) const override {
+    inference.set_by_rows();
     for (const char* input : {"fast", "depth"}) inference.set_radius(input, settings_.radius);
     inference.set_in_place("color", "color");
   }

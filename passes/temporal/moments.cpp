@@ -56,6 +56,8 @@ class Moments final : public Pass {
         max_length_(static_cast<float>(params.max_length)),
         warm_up_(params.warm_up ? 1.0F : 0.0F) {}
 
+  void infer(Inference& inference) const override { inference.set_by_rows(); }
+
   void run(const Frame& frame) const override {
     const FloatImage color = frame.image("color"), history = frame.image("history"), length = frame.image("length"),
                      valid = frame.image("valid");

@@ -81,6 +81,7 @@ class MotionPass final : public Pass {
   explicit MotionPass(const Params& params) : params_(params) {}
 
   void infer(Inference& inference) const override {
+    inference.set_by_rows();
     const bool cameras = inference.present("camera") && inference.present("previous_camera");
     if (params_.jitter == Jitter::included && !cameras)
       throw std::runtime_error("jitter 'included' needs 'camera' and 'previous_camera', which tell the jitter");

@@ -3,13 +3,15 @@
 //          and the bound of fireflies, without the extra rays of A-SVGF's gradients.
 // Departs: how they do is quell's: the relative change of one percentile from frame to frame, beyond a tolerance; a multiple of
 //          another as the bound; both interpolated between the centers of the blocks.
-// Cost:    a partial sort of each block, three times; a bilinear interpolation a pixel.
+// Cost:    32 comparisons a pixel for each percentile, two or, with a bound, three; a bilinear interpolation a pixel.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 #include "quell/sdk/pass.h"
+#include "quell/sdk/plain_loop.h"
 
 namespace quell {
 namespace {
@@ -62,10 +64,29 @@ float luminance(const FloatImage& color, int x, int y) {
   return std::isfinite(l) ? l : 0.0F;
 }
 
-float percentile(float* values, std::size_t count, double percent) {
-  const auto index = static_cast<std::ptrdiff_t>(std::lround(static_cast<double>(count - 1) * percent / 100));
-  std::nth_element(values, values + index, values + count);
-  return values[index];
+// A float as a whole number that is ordered as floats are.
+std::int32_t key_of(float value) {
+  const auto bits = std::bit_cast<std::int32_t>(value);
+  return bits ^ ((bits >> 31) & 0x7fffffff);
+}
+float value_of(std::int32_t key) { return std::bit_cast<float>(key ^ ((key >> 31) & 0x7fffffff)); }
+
+// The key of that index in order, without sorting: bit by bit the largest that not more than `index` keys are smaller than.
+QUELL_PLAIN_LOOP std::int32_t select(const std::int32_t* __restrict keys, std::int32_t count, std::int32_t index) {
+  constexpr std::uint32_t kSign = 0x80000000U;  // keys begin at -2^31
+  std::uint32_t found = 0;
+  for (std::uint32_t bit = kSign; bit != 0; bit >>= 1) {
+    const auto trial = static_cast<std::int32_t>((found | bit) ^ kSign);
+    std::int32_t smaller = 0;
+    for (std::int32_t i = 0; i < count; ++i) smaller += keys[i] < trial ? 1 : 0;
+    if (smaller <= index) found |= bit;
+  }
+  return static_cast<std::int32_t>(found ^ kSign);
+}
+
+float percentile(const std::int32_t* keys, std::size_t count, double percent) {
+  const auto index = static_cast<std::int32_t>(std::lround(static_cast<double>(count - 1) * percent / 100));
+  return value_of(select(keys, static_cast<std::int32_t>(count), index));
 }
 
 // Where a pixel lies among the centers of blocks: between `first` and `second`, `way` of the way.
@@ -104,7 +125,7 @@ class PercentileAlpha final : public Pass {
     const Size size = inference.size("color");
     inference.set_scratch(2 * static_cast<std::size_t>(count(size.width)) * static_cast<std::size_t>(count(size.height)) *
                           sizeof(float));
-    inference.set_slot_scratch(static_cast<std::size_t>(p_.block) * static_cast<std::size_t>(p_.block) * sizeof(float));
+    inference.set_slot_scratch(static_cast<std::size_t>(p_.block) * static_cast<std::size_t>(p_.block) * sizeof(std::int32_t));
   }
 
   void run(const Frame& frame) const override {
@@ -118,7 +139,7 @@ class PercentileAlpha final : public Pass {
         [&](int first, int last, std::uint32_t slot) {
           for (int row = first; row < last; ++row)
             for (int column = 0; column < columns; ++column)
-              look_through(color, previous, valid, column, row, static_cast<float*>(frame.slot_scratch(slot)), blocks);
+              look_through(color, previous, valid, column, row, static_cast<std::int32_t*>(frame.slot_scratch(slot)), blocks);
         },
         1);
     frame.parallel_rows(color.height, [&](int y0, int y1) {
@@ -136,19 +157,22 @@ class PercentileAlpha final : public Pass {
   }
 
   void look_through(const FloatImage& color, const FloatImage& previous, const FloatImage& valid, int column, int row,
-                    float* values, const Blocks& blocks) const {
+                    std::int32_t* keys, const Blocks& blocks) const {
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row) * blocks.columns + column;
     std::size_t n = 0;
-    each_pixel(color, column, row, [&](int x, int y) { values[n++] = luminance(color, x, y); });
-    blocks.bound[at] = static_cast<float>(p_.bound) * percentile(values, n, p_.bright_percentile);
+    blocks.bound[at] = 0;
+    if (p_.bound > 0) {
+      each_pixel(color, column, row, [&](int x, int y) { keys[n++] = key_of(luminance(color, x, y)); });
+      blocks.bound[at] = static_cast<float>(p_.bound) * percentile(keys, n, p_.bright_percentile);
+    }
     blocks.confidence[at] = 1;
     if (!previous) return;
     const auto of_valid = [&](const FloatImage& image) {
       n = 0;
       each_pixel(image, column, row, [&](int x, int y) {
-        if (!valid || valid.at(x, y) > 0.5F) values[n++] = luminance(image, x, y);
+        if (!valid || valid.at(x, y) > 0.5F) keys[n++] = key_of(luminance(image, x, y));
       });
-      return n > 0 ? percentile(values, n, p_.percentile) : 0.0F;
+      return n > 0 ? percentile(keys, n, p_.percentile) : 0.0F;
     };
     const float now = of_valid(color), before = of_valid(previous), largest = std::max({now, before, kDarkest});
     const float excess = std::max(std::abs(now - before) - static_cast<float>(p_.tolerance) * largest, 0.0F);
@@ -158,13 +182,14 @@ class PercentileAlpha final : public Pass {
   void write_row(const FloatImage& color, const Blocks& blocks, int y, const FloatOutput& confidence,
                  const FloatOutput& out) const {
     const Between row = between(y, p_.block, blocks.rows);
+    for (int c = 0; c < out.channels; ++c) std::copy_n(color.row(y, c), color.width, out.row(y, c));
     for (int x = 0; x < color.width; ++x) {
       const Between column = between(x, p_.block, blocks.columns);
       confidence.at(x, y) = blocks.interpolate(blocks.confidence, column, row);
-      const float bound = blocks.interpolate(blocks.bound, column, row), l = luminance(color, x, y);
-      const bool is_above = p_.bound > 0 && l > std::max(bound, 0.0F);
-      for (int c = 0; c < out.channels; ++c)
-        out.at(x, y, c) = is_above ? color.at(x, y, c) * (std::max(bound, 0.0F) / l) : color.at(x, y, c);
+      if (p_.bound <= 0) continue;
+      const float bound = std::max(blocks.interpolate(blocks.bound, column, row), 0.0F), l = luminance(color, x, y);
+      if (l <= bound) continue;
+      for (int c = 0; c < out.channels; ++c) out.at(x, y, c) *= bound / l;
     }
   }
 

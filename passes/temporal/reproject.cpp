@@ -129,6 +129,7 @@ class ReprojectPass final : public Pass {
   explicit ReprojectPass(const Params& params) : settings_(make_settings(params)) {}
 
   void infer(Inference& inference) const override {
+    inference.set_by_rows();
     for (std::size_t i = 0; i < inference.count("history"); ++i) inference.set_size("history", inference.size("motion"), i);
     for (const char* output : {"valid", "rejected"}) inference.set_size(output, inference.size("motion"));
     for (const char* input : {"history", "previous_id", "previous_depth", "previous_normal", "previous_position"})

@@ -1,11 +1,13 @@
 // Neighbors in a vector mostly fetch from neighbors: of each tap the lanes then lie one behind the other, or, where the motion
-// passes a whole number, in two such runs, and are loaded as such. Only where they are scattered is each lane fetched by itself.
+// passes a whole number, in two such runs, and are loaded as such. Where they are scattered, or a tap or the last lane may lie
+// outside of the image, each lane is fetched by itself.
 //
 // A result is one of its taps plus the weighted differences of the others to it: the mean of equal values is that value, bit for
 // bit, and a result errs by its own rounding, 6e-8 of it, and that of the weights, 3e-7 of the range of the taps.
 #include "passes/temporal/reproject_kernel.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -22,7 +24,8 @@
 #define QUELL_REPROJECT_SHARED
 namespace quell::reproject {
 
-constexpr int kAhead = 128;
+constexpr int kAhead =
+    128;  // px from a site: what rows will be loaded from 8 vectors of 16 later, about the time that memory takes
 constexpr float kFarthest = 1048576;  // px that a motion can have; images are at most 65536 wide, and such an int is exact
 
 // Which taps a result has, relative to the pixel that the fetch names. Those that limit a result come first.
@@ -424,11 +427,33 @@ HWY_INLINE void reproject_pixels(const Images& in, const Settings& s, const Pixe
   }
 }
 
+// What the pixels of a row are told of in this frame, for memory to yield it beforehand: there are more streams than the
+// processor follows by itself.
+class Ahead {
+ public:
+  Ahead(const Images& in, int y) {
+    for (const FloatImage* image : {&in.motion, &in.depth, &in.depth_gradient, &in.normal, &in.normal_gradient, &in.position})
+      for (int c = 0; *image && c < image->channels; ++c) planes_[count_++] = image->row(y, c);
+    if (in.id) planes_[count_++] = in.id.row(y);
+  }
+  HWY_INLINE void fetch(int x) const {
+    for (int i = 0; i < count_; ++i)
+      __builtin_prefetch(static_cast<const float*>(planes_[static_cast<std::size_t>(i)]) + x + kAhead);
+  }
+
+ private:
+  std::array<const void*, 13> planes_;
+  int count_ = 0;
+};
+
 template <Fetch kFetch>
 void reproject_each(const Images& in, const Settings& s, std::span<const Moved> history, int y, const FloatOutput& valid,
                     const FloatOutput& rejected) {
-  for (int x = 0; x < valid.width; x += lanes())
+  const Ahead ahead(in, y);
+  for (int x = 0; x < valid.width; x += lanes()) {
+    ahead.fetch(x);
     reproject_pixels<kFetch>(in, s, {x, y, valid.width - x}, history, valid, rejected);
+  }
 }
 
 void ReprojectRow(const Images& in, const Settings& s, std::span<const Moved> history, int y, const FloatOutput& valid,

@@ -69,6 +69,7 @@ class Taa final : public Pass {
                   .weigh = p.weigh} {}
 
   void infer(Inference& inference) const override {
+    inference.set_by_rows();
     if (!inference.present("history")) return inference.set_in_place("color", "color");
     inference.set_in_place("color", "history");
     if (settings_.limit != Limit::none) inference.set_radius("color", 1);

@@ -160,6 +160,8 @@ class TemporalBlendPass final : public Pass {
 
   void infer(Inference& inference) const override {
     const auto width = static_cast<std::size_t>(inference.size("color").width);
+    const bool is_converted = inference.present("history") && params_.clamp != Clamp::none && params_.space == Space::ycocg;
+    if (!is_converted) inference.set_by_rows();
     if (!inference.present("history")) return inference.set_in_place("color", "color");
     inference.set_in_place("color", "history");
     inference.set_slot_scratch(width * sizeof(double));
@@ -167,7 +169,7 @@ class TemporalBlendPass final : public Pass {
     inference.set_radius("color", params_.clamp_radius);
     const std::size_t channels = params_.space == Space::ycocg ? 3 : 1;  // whose limits are needed at a time
     inference.set_slot_scratch((width + (2 + 2 * channels) * padded(inference.size("color").width)) * sizeof(double));
-    if (params_.space == Space::ycocg)
+    if (is_converted)
       inference.set_scratch(3 * static_cast<std::size_t>(scratch_stride(inference.size("color").width)) *
                             static_cast<std::size_t>(inference.size("color").height) * sizeof(float));
   }

@@ -101,6 +101,81 @@ TEST_F(Tune, RefusesWhatItCannotSearch) {
               HasSubstr("--metric: 'tpsnr' cannot be searched by"));
 }
 
+TEST_F(Tune, SaysThatNothingBetterWasFound) {
+  make_scaled_shot();
+  const Outcome outcome = tune({"--metric", "mse", "--evaluations", "5", "-o", text("found.json")}, R"({ "gain": 0.75 })");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("nothing better than the start was found"));
+  EXPECT_EQ(found("scale.gain"), 0.75);
+}
+
+TEST_F(Tune, TellsTheMixtureBesideWhatItIsMadeOf) {
+  make_scaled_shot();
+  const Outcome outcome = tune({"--evaluations", "20", "-o", text("found.json"), "--held-out", "none"});
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("\n  mixed, frames 1-4 +1 +0[.][0-9]+\n"));
+}
+
+TEST_F(Tune, RefusesAFileThatItCannotWriteBeforeItSearches) {
+  make_scaled_shot();
+  for (const bool dry : {false, true}) {
+    std::vector<std::string> options{"-o", text("no/such/found.json")};
+    if (dry) options.push_back("--dry-run");
+    const Outcome outcome = tune(options);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("--out: " + text("no/such/found.json") + " cannot be written: No such file or directory"));
+    EXPECT_THAT(outcome.err, Not(HasSubstr("start:")));
+  }
+}
+
+TEST_F(Tune, TakesValuesThatThePassRefusesForBadOnes) {
+  make_scaled_shot();
+  const Outcome outcome = tune({"--metric", "mse", "--evaluations", "60", "-o", text("found.json"), "--range",
+                                "scale.gain=0.001..1e9", "--everywhere", "-v"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("a gain above 200000 is too much"));
+  EXPECT_NEAR(found("scale.gain"), 0.75, 0.05);
+}
+
+TEST_F(Tune, SearchesNothingTwice) {
+  make_scaled_shot();
+  const auto graph = [&](const std::string& second) {
+    write_file("two.json", R"({ "quell": 1, "name": "two", "inputs": { "color": "color" },
+      "params": { "gain": { "sets": ["a.gain", "b.gain"] } },
+      "nodes": { "a": { "pass": "test_scale", "in": { "color": "color" }, "params": { "gain": 2 } },
+                 "b": { "pass": "test_scale", "in": { "color": "a.color" }, "params": { "gain": )" +
+                               second + R"( } } },
+      "outputs": { "color": "b.color" } })");
+    return text("two.json");
+  };
+  const auto error = [&](const std::string& second, const std::string& params) {
+    const Outcome outcome = run({"tune", graph(second), text("shot"), "--params", params, "-q"});
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(error("2", "gain,b.gain"),
+              HasSubstr("--params: 'gain' and 'b.gain' set the same parameter; leave one of them out"));
+  EXPECT_THAT(error("3", "gain"), HasSubstr("'gain' sets parameters that have different values now, 2 and 3; give it one first"));
+}
+
+TEST_F(Tune, SearchesWholeNumbersBetweenWholeNumbers) {
+  make_scaled_shot();
+  const std::string graph = make_graph(R"({ "wait_from": 100 })");
+  const auto dry = [&](const std::string& range) {
+    return run({"tune", graph, text("shot"), "--params", "scale.wait_from", "--range", "scale.wait_from=" + range, "-n"});
+  };
+  EXPECT_THAT(dry("50.5..120.5").out, HasSubstr("51..120"));
+  EXPECT_THAT(dry("50.2..50.8").err, HasSubstr("'scale.wait_from' is a whole number, and 50.2..50.8 holds none of them"));
+}
+
+TEST_F(Tune, RefusesAFrameThatCannotBeMeasured) {
+  make_scaled_shot();
+  std::filesystem::remove(path("shot/reference.0002.exr"));
+  write_file("shot/reference.0002.exr", "no image");
+  const Outcome outcome = tune({"--metric", "mse", "--held-out", "none"});
+  EXPECT_NE(outcome.code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("reference.0002.exr"));
+}
+
 TEST_F(Tune, KeepsTheBestWhenItIsInterrupted) {
   make_scaled_shot();
   const std::string graph = make_graph(R"({ "gain": 2 })");
@@ -116,7 +191,7 @@ TEST_F(Tune, KeepsTheBestWhenItIsInterrupted) {
   EXPECT_LE(found("scale.gain"), 2);
 }
 
-// What the issue asks of it: a parameter that is deliberately wrong, on a part of the sample.
+// From both sides a search ends where one from nearby does, on a part of the sample.
 TEST_F(Tune, BringsAWrongParameterBack) {
   const auto mse = [&](const char* sigma) {
     const Outcome outcome = quell({"tune",

@@ -96,6 +96,13 @@ TEST(TunedParam, StaysWholeWhereItIs) {
   EXPECT_EQ(radius.value(1), 8);
 }
 
+TEST(TunedParam, HasAPlaceForAStartOutsideOfItsRange) {
+  const TunedParam sigma{.name = "s", .low = 0.25, .high = 64, .is_geometric = true};
+  EXPECT_EQ(sigma.place(-1), 0);
+  EXPECT_EQ(sigma.place(0), 0);
+  EXPECT_EQ(sigma.place(1e9), 1);
+}
+
 TEST(Goal, TurnsFiguresIntoCosts) {
   EXPECT_LT(cost(parse_goal("psnr"), {31}, {30}), cost(parse_goal("psnr"), {30}, {30}));
   EXPECT_LT(cost(parse_goal("flip"), {0.1}, {0.2}), cost(parse_goal("flip"), {0.2}, {0.2}));

@@ -23,9 +23,10 @@ struct Subject {
   std::string name;
   std::vector<Figure> (*figures)();
 };
-const std::vector<Subject> kSubjects = {{"scheduler", scheduler_figures}, {"joint_bilateral", joint_bilateral_figures},
-                                        {"atrous", atrous_figures},       {"flip", flip_figures},
-                                        {"games202", games202_figures},   {"svgf", svgf_figures}};
+const std::vector<Subject> kSubjects = {{"scheduler", scheduler_figures},   {"joint_bilateral", joint_bilateral_figures},
+                                        {"atrous", atrous_figures},         {"flip", flip_figures},
+                                        {"games202", games202_figures},     {"svgf", svgf_figures},
+                                        {"throughput", throughput_figures}, {"files", file_figures}};
 
 std::vector<std::string> subject_names() {
   std::vector<std::string> names;

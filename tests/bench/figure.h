@@ -27,6 +27,8 @@ std::vector<Figure> flip_figures();
 std::vector<Figure> atrous_figures();
 std::vector<Figure> games202_figures();
 std::vector<Figure> svgf_figures();
+std::vector<Figure> throughput_figures();
+std::vector<Figure> file_figures();
 
 /// The seconds of several ways to do something, in their order, again and again in alternation, so that all see the same
 /// neighbors: of each the smallest, to which the machine's other work has added least.

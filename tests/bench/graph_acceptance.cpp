@@ -34,15 +34,15 @@ double bytes_moved(const Plan& plan, const PlannedNode& planned) {
 /// A figure for each node. Those of `unbound` passes, whose arithmetic takes longer than memory does, have no bar.
 std::vector<Figure> node_figures(const GraphTimes& times, double bytes_per_second, const std::set<std::string>& unbound) {
   std::vector<Figure> figures;
-  for (std::size_t i = 0; i < times.nodes.size(); ++i) {
+  for (std::size_t i = 0; i < times.best.nodes.size(); ++i) {
     const PlannedNode& planned = times.plan.nodes[i];
     const Node& node = times.plan.graph->nodes[static_cast<std::size_t>(planned.node)];
     const double bound = bytes_moved(times.plan, planned) / bytes_per_second;
     char text[128];
-    std::snprintf(text, sizeof text, "%.2f ms, %.2f ns a pixel; memory alone %.2f ms, 1 / %.2f", times.nodes[i] * 1e3,
-                  times.nodes[i] * 1e9 / (kSize.width * kSize.height), bound * 1e3, times.nodes[i] / bound);
+    std::snprintf(text, sizeof text, "%.2f ms, %.2f ns a pixel; memory alone %.2f ms, 1 / %.2f", times.best.nodes[i] * 1e3,
+                  times.best.nodes[i] * 1e9 / (kSize.width * kSize.height), bound * 1e3, times.best.nodes[i] / bound);
     Figure figure{.what = node.name + " (" + node.pass->id + "), times its bandwidth bound",
-                  .reached = times.nodes[i] / bound,
+                  .reached = times.best.nodes[i] / bound,
                   .bar = 2,
                   .at_most = true,
                   .note = text};
@@ -59,12 +59,12 @@ std::vector<Figure> graph_figures(const std::string& name, const std::set<std::s
   const GraphTimes times = time_graph(name, kSize, threads);
   const double bytes_per_second = std::max(before, measure_copy_bandwidth(threads));
   char text[160];
-  std::snprintf(text, sizeof text, "%.1f ms: nodes %.1f, inputs %.1f; frames of %s; copying %.1f GB/s", 1e3 * times.frame,
-                1e3 * std::reduce(times.nodes.begin(), times.nodes.end()), 1e3 * times.reading, times.from.c_str(),
+  std::snprintf(text, sizeof text, "%.1f ms: nodes %.1f, inputs %.1f; frames of %s; copying %.1f GB/s", 1e3 * times.best.frame,
+                1e3 * std::reduce(times.best.nodes.begin(), times.best.nodes.end()), 1e3 * times.best.reading, times.from.c_str(),
                 bytes_per_second * 1e-9);
   std::vector<Figure> figures = node_figures(times, bytes_per_second, unbound);
   figures.push_back({.what = "1080p on " + std::to_string(threads) + " threads, ms a frame; the bar is for AVX-512",
-                     .reached = times.frame * 1e3,
+                     .reached = times.best.frame * 1e3,
                      .bar = bar,
                      .at_most = true,
                      .note = text});

@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <map>
+#include <mutex>
 #include <optional>
 #include <string_view>
+#include <tuple>
 
 #include "quell/graph/schema.h"
 #include "quell/runtime/session.h"
@@ -26,16 +30,17 @@ class ShippedGraph : public ::testing::TestWithParam<std::filesystem::path> {};
 
 class SyntheticFrames final : public FrameSource {
  public:
-  explicit SyntheticFrames(const Graph& graph) : graph_(graph) {}
+  explicit SyntheticFrames(const Graph& graph, Size size = {37, 29}) : graph_(graph), size_(size) {}
   std::optional<Shape> shape(std::string_view input) override { return shape_of(item(input, 0)); }
   Item read(std::string_view input, std::int64_t frame, BufferPool&) override { return item(input, frame); }
 
  private:
   Item item(std::string_view name, std::int64_t frame) const {
     const auto input = std::ranges::find(graph_.inputs, name, &GraphInput::name);
-    return synthetic(input->type, {37, 29}, static_cast<std::uint32_t>(frame));
+    return synthetic(input->type, size_, static_cast<std::uint32_t>(frame));
   }
   const Graph& graph_;
+  Size size_;
 };
 
 class FiniteSink final : public FrameSink {
@@ -57,6 +62,46 @@ TEST_P(ShippedGraph, RunsOverFramesAndStaysFinite) {
   SyntheticFrames frames(*graph);
   FiniteSink sink;
   for (const FrameReport& report : Session(graph).run({0, 1, 2}, frames, sink)) EXPECT_TRUE(report.ok) << report.error;
+}
+
+class KeepingSink final : public FrameSink {
+ public:
+  void write(std::string_view output, std::int64_t frame, const Item& item) override {
+    const std::scoped_lock lock(mutex_);
+    items[{std::string(output), frame}] = item;
+  }
+  std::map<std::pair<std::string, std::int64_t>, Item> items;
+
+ private:
+  std::mutex mutex_;
+};
+
+bool same_bits(const Item& a, const Item& b) {
+  if (a.values()) return *a.values() == *b.values();
+  const quell_image x = a.image()->raw(), y = b.image()->raw();
+  for (std::uint32_t c = 0; c < x.channels; ++c)
+    for (int row = 0; row < x.height; ++row) {
+      const auto at = [&](const quell_image& image) {
+        return static_cast<const float*>(image.data) + c * image.plane_stride + row * image.row_stride;
+      };
+      if (std::memcmp(at(x), at(y), static_cast<std::size_t>(x.width) * sizeof(float)) != 0) return false;
+    }
+  return x.width == y.width && x.height == y.height;
+}
+
+// Of a height that makes several bands of rows.
+TEST_P(ShippedGraph, YieldsTheSameBitsFusedOrNot) {
+  const Registry passes = load_plugins();
+  const auto graph = load_graph(GetParam(), passes);
+  KeepingSink fused, alone;
+  for (const auto& [sink, fuse, threads] : {std::tuple(&alone, false, 1), std::tuple(&fused, true, 3)}) {
+    SyntheticFrames frames(*graph, {37, 75});
+    for (const FrameReport& report : Session(graph, {.threads = threads, .fuse = fuse}).run({0, 1, 2, 3}, frames, *sink))
+      EXPECT_TRUE(report.ok) << report.error;
+  }
+  ASSERT_EQ(fused.items.size(), alone.items.size());
+  for (const auto& [key, item] : alone.items)
+    EXPECT_TRUE(same_bits(item, fused.items.at(key))) << key.first << " of frame " << key.second;
 }
 
 // Every parameter, set or not.

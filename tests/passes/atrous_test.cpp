@@ -376,6 +376,16 @@ TEST(Atrous, LeavesOutATapThatIsNotFinite) {
     }
 }
 
+TEST(Atrous, LeavesOutATapThatLiesTooFarOff) {
+  for (const char* stops : {"dammertz", "joint_bilateral"}) {
+    const Case c{.stops = stops, .without = {"depth_gradient", "variance"}};
+    Scene broken = make_scene(c), hole = make_scene(c);
+    broken.at("position").writable_floats().at(7, 6, 1) = 1e25F;  // its square is infinite
+    for (int k = 0; k < 3; ++k) hole.at("normal").writable_floats().at(7, 6, k) = 0;
+    EXPECT_TRUE(same_bits(run(c, broken).color, run(c, hole).color)) << stops;
+  }
+}
+
 }  // namespace
 }  // namespace quell::atrous_test
 

@@ -12,14 +12,15 @@
 namespace quell::conformance {
 namespace {
 
-/// A pass, and one of its enum parameters with a value that is not its default; or none.
+/// A pass, and one of its parameters that choose, of an enum or bool, with a value that is not its default; or none.
 struct Mode {
   const quell_pass_desc* pass;
   std::string param, value;
+  bool is_enum = false;
 
   PassTest make() const {
     PassTest test(*pass);
-    if (!param.empty()) test.set(param, value);
+    if (!param.empty()) test.set_json(param, is_enum ? '"' + value + '"' : value);
     return test;
   }
   std::string name() const { return pass->id + (param.empty() ? "" : "_" + param + "_" + value); }
@@ -32,11 +33,13 @@ std::vector<Mode> modes() {
   const quell_pass_desc* const* passes = quell_plugin_passes(&count);
   std::vector<Mode> all;
   for (std::uint32_t i = 0; i < count; ++i) {
-    all.push_back({passes[i], "", ""});
+    all.push_back({passes[i]});
     for (std::uint32_t p = 0; p < passes[i]->param_count; ++p) {
       const quell_param_desc& param = *QUELL_AT(quell_param_desc, passes[i]->params, p);
       for (std::uint32_t e = 0; e < param.enum_count; ++e)
-        if (*param.default_value->data.ints != e) all.push_back({passes[i], param.name, param.enum_values[e]});
+        if (*param.default_value->data.ints != e) all.push_back({passes[i], param.name, param.enum_values[e], true});
+      if (param.type == QUELL_PARAM_BOOL && !param.is_array)
+        all.push_back({passes[i], param.name, *param.default_value->data.bools ? "false" : "true"});
     }
   }
   return all;

@@ -84,8 +84,13 @@ double feature_distance(const Case& c, const Plane& f, int planes, int px, int p
   double squared = 0, gradient = 0;
   for (int i = 0; i < planes; ++i) {
     squared += std::pow(double{f(px, py, i)} - f(qx, qy, i), 2);
-    if (right > left) gradient += std::pow((double{f(right, py, i)} - f(left, py, i)) / (right - left), 2);
-    if (below > above) gradient += std::pow((double{f(px, below, i)} - f(px, above, i)) / (below - above), 2);
+    // Depth alone has holes, whose edges are no slopes.
+    const auto is_hole = [&](int x, int y) { return f(x, y, i) == 1e10F; };
+    const int x0 = is_hole(left, py) ? px : left, x1 = is_hole(right, py) ? px : right;
+    const int y0 = is_hole(px, above) ? py : above, y1 = is_hole(px, below) ? py : below;
+    if (is_hole(px, py)) continue;
+    if (x1 > x0) gradient += std::pow((double{f(x1, py, i)} - f(x0, py, i)) / (x1 - x0), 2);
+    if (y1 > y0) gradient += std::pow((double{f(px, y1, i)} - f(px, y0, i)) / (y1 - y0), 2);
   }
   const double v = c.with_variances ? feature_variance(px, py, 0) : 0, w = c.with_variances ? feature_variance(qx, qy, 0) : 0;
   return (squared - (v + std::min(v, w))) / (c.k_feature * c.k_feature * std::max({c.tau, v, gradient}));
@@ -185,6 +190,33 @@ TEST(Nlm, NeverCrossesAnEdgeOfAFeature) {
   pass.input("feature", test_image(QUELL_TYPE_SCALAR, kWide, half)).set("k_feature", 0.3).run();
   // At the edge the gradient is 1/2: the other side weighs exp(-1 / (0.09 / 4)), elsewhere less.
   for (int x = 0; x < kWide.width; ++x) ASSERT_NEAR(pass.output("color").at(x, 30), half(x, 0, 0), 1e-6) << x;
+}
+
+// A wall before another one, and background above: the edge of the background is no slope that explains the step.
+TEST(Nlm, TellsDepthsApartBesideTheBackground) {
+  PassTest pass("nlm");
+  const auto near_left = [](int x, int, int) { return x < 40 ? 0.0F : 1.0F; };
+  pass.set("k", 100.0).input("variance", uniform_variance(100));
+  pass.input("color", test_image(QUELL_TYPE_COLOR, kWide, near_left));
+  pass.input("feature",
+             test_image(QUELL_TYPE_DEPTH, kWide, [](int x, int y, int) { return y < 30 ? 1e10F : (x < 36 ? 2.0F : 9.0F); }));
+  pass.run();
+  // At x = 35 the step itself is in the gradient.
+  for (int x = 0; x < 35; ++x) ASSERT_NEAR(pass.output("color").at(x, 30), 0, 1e-6) << x;
+}
+
+TEST(Nlm, TakesAVarianceBelowZeroAsNone) {
+  const auto of = [](float v) {
+    PassTest pass = make({.with_features = true});
+    pass.disconnect("variance").input("variance", test_image(QUELL_TYPE_VARIANCE, {37, 17}, [v](int x, int y, int) {
+                                        return x % 3 == y % 2 ? v : 1.0F;
+                                      }));
+    pass.run();
+    return pass.output_item("color");
+  };
+  const Item negative = of(-5), none = of(0);
+  for (int y = 0; y < 17; ++y)
+    for (int x = 0; x < 37; ++x) ASSERT_EQ(negative.image()->floats().at(x, y), none.image()->floats().at(x, y)) << x << "," << y;
 }
 
 TEST(Nlm, LeavesAsItIsWhatHasNoVariance) {

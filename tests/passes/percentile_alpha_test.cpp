@@ -135,6 +135,24 @@ TEST(PercentileAlpha, IsNotMovedByAFireflyButDarkensIt) {
     }
 }
 
+// The luminances of a block are -20, -19, ..., 43, in disorder: what overshoots below 0 is in order, too.
+TEST(PercentileAlpha, OrdersWhatIsNegative) {
+  const auto value = [](int x, int y, int) { return static_cast<float>((x + 8 * y) * 37 % 64 - 20); };
+  for (const int index : {0, 3, 19, 20, 21, 32, 63}) {
+    const auto trust = [&](int previous) {
+      PassTest pass("percentile_alpha");
+      pass.set("percentile", index * 100 / 63.0).set("tolerance", 0.0).set("sensitivity", 1.0);
+      pass.input("color", test_image(QUELL_TYPE_COLOR, {8, 8}, value));
+      pass.input("previous", test_image(QUELL_TYPE_COLOR, {8, 8}, [=](int, int, int) { return static_cast<float>(previous); }));
+      pass.run();
+      return pass.output("confidence").at(5, 2);
+    };
+    EXPECT_EQ(trust(index - 20), 1) << index;
+    EXPECT_LT(trust(index - 21), 1 - 1.0 / 64) << index;
+    EXPECT_LT(trust(index - 19), 1 - 1.0 / 64) << index;
+  }
+}
+
 TEST(PercentileAlpha, CountsWhatIsNotFiniteAsDark) {
   PassTest pass("percentile_alpha");
   pass.set("percentile", 50.0).set("tolerance", 0.0);

@@ -48,7 +48,9 @@ const PassInfo kInfo{
 
 class TestScale final : public Pass {
  public:
-  explicit TestScale(const Params& params) : params_(params) {}
+  explicit TestScale(const Params& params) : params_(params) {
+    if (params.gain > 2e5) throw std::invalid_argument("a gain above 200000 is too much");
+  }
 
   void run(const Frame& frame) const override {
     const bool now = std::count(params_.at.begin(), params_.at.end(), frame.number()) > 0;

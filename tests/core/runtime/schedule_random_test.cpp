@@ -1,6 +1,8 @@
 // Random graphs over random frames: what comes out is what the graph's definition says, and the same bits under every schedule.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/core/runtime/schedule_naive.h"
 
 namespace quell::test {
@@ -49,7 +51,9 @@ TEST_P(RandomGraphs, YieldWhatTheirDefinitionSaysUnderEverySchedule) {
     for (unsigned k = 0; k < kSettingsPerGraph; ++k) {
       const Setting chosen = setting(static_cast<int>((seed + 5 * k) % kSettings));
       SCOPED_TRACE(describe(chosen));
-      expect_same(run(checked, graph.inputs, scene, with_dumps(concurrent(chosen), graph), (seed + k) % 3 == 0), want);
+      SessionOptions options = with_dumps(concurrent(chosen), graph);
+      options.fuse = k % 4 != 3;
+      expect_same(run(checked, graph.inputs, scene, options, (seed + k) % 3 == 0), want);
     }
     if (HasFailure()) {
       ADD_FAILURE() << to_json(graph, testing::TempDir());
@@ -72,6 +76,12 @@ TEST(RandomGraphsOfTheTest, HaveEverythingOften) {
     for (const GraphInput& input : checked->inputs) shapes[input.name] = source.shape(input.name);
     const Plan plan = make_plan(checked, shapes);
     counts["graphs of which five nodes or more run"] += plan.nodes.size() >= 5;
+    for (const PlannedTurn& turn : plan.turns) {
+      counts["fused nodes"] += turn.is_fused();
+      counts["fused nodes that run ahead"] += turn.is_fused() && std::ranges::max(turn.ahead) > 0;
+      counts["images that are whole beside a window"] += std::ranges::count(turn.windows, true, &PlannedWindow::whole);
+    }
+    counts["images that are never whole"] += static_cast<int>(plan.inner.size());
     counts["loops"] += static_cast<int>(plan.loops.size());
     for (const PlannedNode& planned : plan.nodes)
       for (const int input : planned.in_place_of) counts["written in place"] += input >= 0;
@@ -100,7 +110,7 @@ TEST(RandomGraphsOfTheTest, HaveEverythingOften) {
       }
     }
   }
-  EXPECT_EQ(counts.size(), 17U);
+  EXPECT_EQ(counts.size(), 21U);
   for (const auto& [what, count] : counts) {
     RecordProperty(what, count);
     EXPECT_GE(count, 25) << what;

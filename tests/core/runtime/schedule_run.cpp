@@ -20,7 +20,7 @@ Scene random_scene(Dice& dice) {
   const int count = dice.from(5, 11);
   std::int64_t frame = dice.from(-5, 100);
   for (int i = 0; i < count; ++i, frame += dice.chance(80) ? 1 : dice.from(2, 4)) scene.frames.push_back(frame);
-  scene.size = {dice.from(1, 17), dice.from(1, 25)};
+  scene.size = {dice.from(1, 17), dice.chance(20) ? dice.from(40, 90) : dice.from(1, 25)};
   const auto any = [&] { return dice.pick(scene.frames); };
   if (dice.chance(25)) scene.unreadable.emplace(dice.chance(50) ? "a" : "s", any());
   if (dice.chance(15)) scene.unreadable.emplace("b", any());

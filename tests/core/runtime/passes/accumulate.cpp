@@ -16,7 +16,10 @@ const PassInfo kInfo{.id = "accumulate",
 class Accumulate final : public Pass {
  public:
   explicit Accumulate(const Params&) {}
-  void infer(Inference& about) const override { about.set_in_place("color", "color"); }
+  void infer(Inference& about) const override {
+    about.set_in_place("color", "color");
+    about.set_by_rows();
+  }
   void run(const Frame& frame) const override {
     const FloatImage color = frame.image("color"), history = frame.image("history");
     const FloatOutput out = frame.output("color");

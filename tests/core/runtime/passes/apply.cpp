@@ -19,6 +19,7 @@ const PassInfo kInfo{.id = "apply",
 class Apply final : public Pass {
  public:
   explicit Apply(const Params& params) : params_(params) {}
+  void infer(Inference& about) const override { about.set_by_rows(); }
   void run(const Frame& frame) const override {
     const FloatImage color = frame.image("color");
     const std::int64_t factor = frame.has("by") ? ring::number(frame.values("by")[0]) : 1;

@@ -40,6 +40,7 @@ class Falter final : public Pass {
   explicit Falter(const Params& params) : params_(params) {}
   void infer(Inference& about) const override {
     if (params_.in_place) about.set_in_place("color", "color");
+    about.set_by_rows();
   }
   void run(const Frame& frame) const override {
     const bool fails = std::ranges::find(params_.frames, frame.number()) != params_.frames.end();

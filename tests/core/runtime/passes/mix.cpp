@@ -19,7 +19,10 @@ const PassInfo kInfo{.id = "mix",
 class Mix final : public Pass {
  public:
   explicit Mix(const Params& params) : params_(params) {}
-  void infer(Inference& about) const override { about.set_radius("color", 1); }
+  void infer(Inference& about) const override {
+    about.set_radius("color", 1);
+    about.set_by_rows();
+  }
   void run(const Frame& frame) const override {
     const FloatImage color = frame.image("color"), other = frame.image("other");
     const FloatOutput out = frame.output("color");

@@ -25,6 +25,7 @@ class Parts final : public Pass {
   explicit Parts(const Params& params) : params_(params) {}
   void infer(Inference& about) const override {
     if (params_.in_place) about.set_in_place("items", "items");
+    about.set_by_rows();
   }
   void run(const Frame& frame) const override {
     const FloatImage color = frame.image("color");

@@ -22,7 +22,10 @@ const PassInfo kInfo{.id = "soften",
 class Soften final : public Pass {
  public:
   explicit Soften(const Params& params) : params_(params) {}
-  void infer(Inference& about) const override { about.set_radius("color", params_.radius); }
+  void infer(Inference& about) const override {
+    about.set_radius("color", params_.radius);
+    about.set_by_rows();
+  }
   void run(const Frame& frame) const override {
     const FloatImage color = frame.image("color");
     const int r = params_.radius;

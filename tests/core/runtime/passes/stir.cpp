@@ -26,6 +26,7 @@ class Stir final : public Pass {
   explicit Stir(const Params& params) : params_(params) {}
   void infer(Inference& about) const override {
     if (params_.in_place) about.set_in_place("color", "color");
+    about.set_by_rows();
   }
   void run(const Frame& frame) const override {
     const FloatImage color = frame.image("color"), other = frame.image("other");
