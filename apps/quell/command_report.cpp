@@ -232,7 +232,7 @@ Command add_report(CLI::App& program) {
   auto arguments = std::make_shared<Arguments>();
   add_options(app, arguments->sequence);
   app.get_option("SEQUENCE")->required();
-  app.add_option("GRAPH", arguments->graphs,
+  app.add_option("GRAPHS", arguments->graphs,
                  "Graph files, or bare names of graphs that ship with quell (games202), each with a label of its own where it "
                  "is written as LABEL=GRAPH.")
       ->required();

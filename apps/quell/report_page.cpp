@@ -52,6 +52,9 @@ void check_report_file(const std::filesystem::path& file) {
   if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
     throw Error(Fault::usage, "--out", file.string() + " is not a file; choose another name");
   refuse_to_replace_others(file, kBeginning, "--out");
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder, error))
+    throw Error(Fault::usage, "--out", "there is no folder " + folder.string() + "; make it first");
 }
 
 void write_report(const std::filesystem::path& file, const std::string& title, const Json& data, const PackedImages& images) {

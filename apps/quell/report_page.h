@@ -18,7 +18,7 @@ std::string script_json(const Json& value);
 /// Text between tags.
 std::string escape_html(std::string_view text);
 
-/// Throws Error(usage) naming --out when something stands there that is no report.
+/// Throws Error(usage) naming --out when something stands there that is no report, or there is no such folder.
 void check_report_file(const std::filesystem::path& file);
 
 /// Writes the page with the data in place of its marker. The file takes its name when it is complete. Throws Error(usage) naming

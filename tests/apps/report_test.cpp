@@ -143,6 +143,12 @@ TEST_F(Report, ReplacesReportsAndNothingElse) {
   EXPECT_EQ(read_file(path("report.html")), "<html>mine</html>");
 }
 
+TEST_F(Report, NeedsItsFolderBeforeAnythingIsComputed) {
+  const Outcome outcome = run({"report", text("shot"), graph_, "-o", text("nowhere/report.html")});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, "error: --out: there is no folder " + text("nowhere") + "; make it first\n");
+}
+
 TEST_F(Report, IsThereWithoutReferenceAndWithoutGraphviz) {
   make_shot(2);
   for (int frame = 1; frame <= 4; ++frame)
