@@ -44,4 +44,6 @@ export function showProvenance(report: Report) {
     details.append(make("div", { class: "scroll" }, make("table", { class: "params" }, make("thead", {}, head), make("tbody", {}, ...rows))));
     body.append(details);
   }
+  const licenses = document.getElementById("licenses")?.textContent;
+  if (licenses) body.append(make("details", {}, make("summary", {}, "Licenses of the libraries in this page"), make("pre", { tabindex: "0" }, licenses)));
 }
