@@ -37,6 +37,7 @@ struct Member {
   const PassInstance* pass = nullptr;
   int position = 0, ahead = 0;
   std::vector<int> in_place_of;
+  std::vector<std::size_t> items;  // of each output
   std::vector<std::size_t> values;
   std::vector<std::size_t> needs;  // members
 };
@@ -107,6 +108,7 @@ struct FusedRunner::State {
     member.position = turn.nodes[index], member.ahead = turn.ahead[index];
     member.in_place_of = planned.in_place_of;
     scratch_bytes = std::max(scratch_bytes, whole_lines(planned.slot_scratch_bytes));
+    for (const std::vector<Shape>& port : planned.outputs) member.items.push_back(port.size());
     for (std::size_t port = 0; port < planned.outputs.size(); ++port)
       for (std::size_t item = 0; item < planned.outputs[port].size(); ++item) {
         const Shape& shape = planned.outputs[port][item];
@@ -164,11 +166,9 @@ struct FusedRunner::State {
       slot_pointers[slot] = static_cast<std::byte*>(scratch.data()) + slot * scratch_bytes;
 
     host.begin(frame);
-    const quell_chunk_fn run_bands = [](void* self, std::int64_t, std::int64_t begin, std::int64_t end, std::uint32_t slot) {
-      for (std::int64_t band = begin; band < end; ++band) static_cast<State*>(self)->run_band(band, slot);
-      return QUELL_OK;
-    };
-    host.raw().parallel_for(&host.raw(), 0, (height + turn.band - 1) / turn.band, 1, run_bands, this);
+    host.run_chunks((height + turn.band - 1) / turn.band, [&](std::int64_t band, std::uint32_t slot) {
+      if (!host.ask_cancelled()) run_band(band, slot);
+    });
     if (host.was_cancelled()) throw Cancelled();
     tell_outcomes();
     tell_seconds(std::chrono::duration<double>(Clock::now() - start).count());
@@ -180,13 +180,14 @@ struct FusedRunner::State {
   PortItems& outputs(std::size_t member) const { return tables->outputs[at(members[member].position)]; }
 
   void place_outputs() const {
-    for (std::size_t member = 0; member < members.size(); ++member)
-      outputs(member).resize(members[member].pass->desc().output_count);
+    for (std::size_t member = 0; member < members.size(); ++member) {
+      PortItems& ports = outputs(member);
+      ports.resize(members[member].items.size());
+      for (std::size_t port = 0; port < ports.size(); ++port) ports[port].resize(members[member].items[port]);
+    }
     for (const Value& value : values) {
-      std::vector<Item>& items = outputs(value.member)[value.port];
-      if (items.size() <= value.item) items.resize(value.item + 1);
       const Image* replaced = item_in_place_of(inputs(value.member), members[value.member].in_place_of[value.port], value.item);
-      if (value.whole && !is_lost(value.member)) items[value.item] = place_item(value.shape, replaced, pool);
+      if (value.whole && !is_lost(value.member)) item_of(value) = place_item(value.shape, replaced, pool);
     }
   }
 

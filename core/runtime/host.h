@@ -37,13 +37,15 @@ class Host {
   std::string take_error();
   /// Whether the pass was told so, or a loop of its was cut short by it: what it has computed then is no result.
   bool was_cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
+  /// Whether the run is cancelled; from then on, was_cancelled().
+  bool ask_cancelled();
+  /// Executor::run, told to the trace.
+  void run_chunks(std::int64_t chunks, Executor::Chunk body);
 
  private:
   static Host& self(const quell_host* host) { return *static_cast<Host*>(host->context); }
   static quell_status parallel_for(const quell_host* host, std::int64_t begin, std::int64_t end, std::int64_t grain,
                                    quell_chunk_fn fn, void* context);
-  bool ask_cancelled();
-  void run_chunks(std::int64_t chunks, Executor::Chunk body);
 
   const HostServices& services_;
   std::string name_;

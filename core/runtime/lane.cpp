@@ -158,7 +158,7 @@ void Lane::publish(int step) {
     for (std::size_t port = 0; port < state_.plan.nodes[at(node)].outputs.size(); ++port) {
       std::vector<Item>& items = tables_.outputs[at(node)][port];
       for (std::size_t i = 0; i < state_.plan.nodes[at(node)].outputs[port].size(); ++i, ++value) {
-        Item item = i < items.size() ? std::exchange(items[i], {}) : Item();
+        Item item = std::exchange(items[i], {});
         for (const int line : state_.wiring.lines[at(value)]) state_.history.add(line, frame_, item);
         note_reset(value, item);
         if (readers_[at(value)] > 0) values_[at(value)] = std::move(item);
