@@ -115,11 +115,23 @@ std::string chain(int length) {
          R"(", "counts": ")" + counts + R"("}})";
 }
 
+// All of its nodes run together, and each reads what it made before.
+std::string fused_chain(int length) {
+  std::string nodes, color = "color";
+  for (int i = 0; i < length; ++i) {
+    const std::string name = "n" + std::to_string(i);
+    nodes += (i == 0 ? "\"" : ", \"") + name + R"(": {"pass": "accumulate", "in": {"color": ")" + color +
+             R"(", "history": {"from": ")" + name + R"(.color", "delay": 1, "initial": "none"}}})";
+    color = name + ".color";
+  }
+  return R"({"quell": 1, "inputs": {"color": "color"}, "nodes": {)" + nodes + R"(}, "outputs": {"color": ")" + color + R"("}})";
+}
+
 // In the frames after the first ones.
-std::size_t count_pushing(int nodes, int threads) {
+std::size_t count_pushing(const std::string& graph, int threads) {
   BufferPool pool;
   const std::map<std::string, Item> inputs{{"color", flat_color({32, 24}, 1.0F, pool)}};
-  Session session(test_graph(chain(nodes)), {.threads = threads});
+  Session session(test_graph(graph), {.threads = threads});
   std::int64_t frame = 0;
   const auto push_frames = [&](std::int64_t end) {
     for (; frame < end; ++frame) session.push(frame, inputs);
@@ -130,10 +142,14 @@ std::size_t count_pushing(int nodes, int threads) {
 
 TEST(AllocationsOfASession, AreTheSameForOneNodeAndForFortyThatArePushed) {
   for (const int threads : {1, 2}) {
-    const std::size_t one = count_pushing(1, threads);
-    EXPECT_EQ(count_pushing(40, threads), one) << threads << " threads";
+    const std::size_t one = count_pushing(chain(1), threads);
+    EXPECT_EQ(count_pushing(chain(40), threads), one) << threads << " threads";
     EXPECT_GT(one, 0U) << "the map of outputs at least";
   }
+}
+
+TEST(AllocationsOfASession, AreTheSameForOneNodeAndForFortyThatAreFused) {
+  for (const int threads : {1, 2}) EXPECT_EQ(count_pushing(fused_chain(40), threads), count_pushing(fused_chain(1), threads));
 }
 
 // Hands out one image, over and over, and lets results go.
