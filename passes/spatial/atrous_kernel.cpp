@@ -61,6 +61,9 @@ struct Job {
 
   int apron() const { return (kReach * step + 15) / 16 * 16; }
   int tile_width() const { return kStride - 2 * apron() - 16; }  // the last vector may start at the last pixel
+  // The columns that are gathered; they begin where vectors do not cross cache lines.
+  int first_read() const { return std::max(0, left - apron()); }
+  int end_of_read() const { return std::min(color.width, right + kReach * step); }
   // The pixel at `left` of row `index` of a phase.
   float* row(int index) const { return memory + (index + kRows) % kRows * kRowFloats + apron(); }
   float* outside_row() const { return memory + kRows * kRowFloats + apron(); }
@@ -76,14 +79,23 @@ void fill_outside(int begin, int end, float* row) {
 
 template <class AnyStops>
 void gather_row(const AnyStops& stops, const Job& job, int y, float* row) {
-  const int reach = kReach * job.step, x0 = std::max(0, job.left - reach), x1 = std::min(job.color.width, job.right + reach);
-  for (int x = x0; x < x1; x += lanes()) {
+  const int begin = job.first_read(), end = job.end_of_read();
+  int x = begin;
+  for (; x < end; x += lanes()) {
     const V3 color = pixels3(stops.in.color, x, y);
-    const Mask counts = hn::And(hn::FirstN(D(), static_cast<std::size_t>(x1 - x)), is_finite(color));
+    const Mask counts = hn::And(hn::FirstN(D(), static_cast<std::size_t>(end - x)), is_finite(color));
     stops.gather(counts, color, x, y, row + (x - job.left));
   }
-  fill_outside<AnyStops>(-reach, x0 - job.left, row);
-  fill_outside<AnyStops>(x1 - job.left, job.right - job.left + reach + 16, row);
+  if (x > end) fill_outside<AnyStops>(end - job.left, x - job.left, row);
+}
+
+// What lies outside of the image in the rows of a tile. No row that is gathered changes it.
+template <class AnyStops>
+void fill_aprons(const Job& job) {
+  for (int index = 0; index < kRows; ++index) {
+    fill_outside<AnyStops>(-job.apron(), job.first_read() - job.left, job.row(index));
+    fill_outside<AnyStops>(job.end_of_read() - job.left, job.right - job.left + kReach * job.step + 16, job.row(index));
+  }
 }
 
 struct Sums {
@@ -187,6 +199,7 @@ void filter_tile(const AnyStops& stops, const Job& job, const Phase& phase, int 
   const auto gather = [&](int index) {
     if (index >= 0 && index < phase.count) gather_row(stops, job, phase.first + index * job.step, job.row(index));
   };
+  fill_aprons<AnyStops>(job);
   for (int index = begin - kReach; index < begin + kReach; ++index) gather(index);
   for (int index = begin; index < end; ++index) {
     gather(index + kReach);
