@@ -10,8 +10,8 @@
 ///
 /// For loops that memory bounds. Where arithmetic does, write a kernel (quell/simd/vectors-inl.h). Under sanitizers, whose
 /// functions the loader may not call yet while it chooses, and with other compilers the function is compiled once.
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12 && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12 && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define QUELL_PLAIN_LOOP [[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]]
 #else
 #define QUELL_PLAIN_LOOP

@@ -43,9 +43,7 @@ HWY_INLINE V3 keep(Mask mask, V3 v) {
 HWY_INLINE Mask is_finite(V v) { return hn::Eq(hn::Mul(v, zero()), zero()); }
 HWY_INLINE Mask is_finite(V3 v) { return hn::Eq(dot(v, zero3()), zero()); }
 // Where the square of a distance is still finite.
-HWY_INLINE Mask is_near(V3 v) {
-  return hn::Lt(hn::Max(hn::Max(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)), set(kFar));
-}
+HWY_INLINE Mask is_near(V3 v) { return hn::Lt(hn::Max(hn::Max(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)), set(kFar)); }
 HWY_INLINE Mask is_surface(V3 normal) { return hn::And(is_finite(normal), hn::Gt(dot(normal, normal), zero())); }
 
 // Schied et al. 2017, equations 3 to 5.

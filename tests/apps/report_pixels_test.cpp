@@ -100,9 +100,7 @@ TEST(Pack, ExactlyKeepsFloatsThatNoHalfEquals) {
   for (std::uint32_t bits = 0; bits < 65536; bits += 7) {
     const auto value = static_cast<float>(half_value(bits));
     ASSERT_EQ(format(value), "f16") << value;
-    if (std::isfinite(value)) {
-      ASSERT_EQ(format(std::nextafter(value, 1e9F)), "f32") << value;
-    }
+    if (std::isfinite(value)) { ASSERT_EQ(format(std::nextafter(value, 1e9F)), "f32") << value; }
   }
 }
 

@@ -36,8 +36,8 @@ struct FlightOf : ::testing::Test {
 
   // `room`: bytes beside what the frames themselves take.
   void prepare(const char* text, int window_frames, std::size_t room = 1 << 20) {
-    state = std::make_unique<PlanState>(make_plan(test_graph(text), {{"color", Shape{QUELL_TYPE_COLOR, {8, 6}, 0, true}}}, {}, false),
-                                        window_frames, pool);
+    state = std::make_unique<PlanState>(
+        make_plan(test_graph(text), {{"color", Shape{QUELL_TYPE_COLOR, {8, 6}, 0, true}}}, {}, false), window_frames, pool);
     Window window = choose_window(state->plan, 1, window_frames, 0);
     window.memory = window.fixed_bytes + window.bytes_per_frame * static_cast<std::size_t>(window_frames) + room;
     flight = std::make_unique<Flight>(frames);
