@@ -48,6 +48,10 @@ class History {
     Items& items = lines_[static_cast<std::size_t>(line)].items;
     items.insert(std::ranges::lower_bound(items, frame, {}, &Kept::first), {frame, std::move(item)});
   }
+  /// Of a line, ascending; all that is there.
+  const std::vector<std::pair<std::int64_t, Item>>& items(int line) const { return lines_[static_cast<std::size_t>(line)].items; }
+  /// For each reset: the frames that it was given in, ascending.
+  const std::vector<std::vector<std::int64_t>>& resets() const { return resets_; }
   /// Lets go of what frames after `frame` cannot reach.
   void advance(std::int64_t frame) {
     for (Line& line : lines_)

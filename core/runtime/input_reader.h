@@ -17,6 +17,12 @@
 namespace quell {
 
 /// Keeps account of what is wanted, being read, and there. Only read() takes long, and needs no lock; all else wants one.
+/// The frames of a run.
+struct RunFrames {
+  const std::vector<std::int64_t>& computed;
+  const std::vector<std::int64_t>& later;  ///< see Session::run
+};
+
 class InputReader {
  public:
   /// One input in one frame.
@@ -31,8 +37,10 @@ class InputReader {
     std::string error;          ///< why there is no item
     double seconds = 0;
   };
-  InputReader(const Graph& graph, FrameSource& source, const std::vector<std::int64_t>& frames, BufferPool& pool, Trace* trace)
-      : graph_(graph), source_(source), frames_(frames.begin(), frames.end()), pool_(pool), trace_(trace) {}
+  InputReader(const Graph& graph, FrameSource& source, const RunFrames& frames, BufferPool& pool, Trace* trace)
+      : graph_(graph), source_(source), frames_(frames.computed.begin(), frames.computed.end()), pool_(pool), trace_(trace) {
+    frames_.insert(frames.later.begin(), frames.later.end());
+  }
 
   /// From now on next() names what the frame needs and nobody has asked for yet.
   void want(std::int64_t frame, const PlanState& state);

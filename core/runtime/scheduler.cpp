@@ -18,16 +18,16 @@ int file_threads(std::uint32_t threads) { return std::min(static_cast<int>(threa
 
 }  // namespace
 
-Scheduler::Scheduler(SessionState& session, const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink)
+Scheduler::Scheduler(SessionState& session, const RunFrames& frames, FrameSource& source, FrameSink& sink)
     : session_(session),
-      frames_(frames),
+      frames_(frames.computed),
       source_(source),
       sink_(sink),
       reading_counts_(source.uses_processor()),
       writing_counts_(sink.uses_processor()),
       reader_(*session.graph, source, frames, session.pool, session.options.trace),
-      flight_(frames),
-      end_(frames.size()) {
+      flight_(frames.computed),
+      end_(frames.computed.size()) {
   flight_.use(*session.running, session.window, static_cast<int>(session.executor.slots()));
   in_flight_.resize(flight_.places());
 }
@@ -314,7 +314,7 @@ void Scheduler::fail(Lock& lock) {
 bool Scheduler::retire_next() {
   const std::size_t index = flight_.retired();
   if (index >= std::min(flight_.begun(), end_) || frame(index).phase != Phase::ended) return false;
-  session_.running->history.advance(frames_[index]);
+  session_.finish(frames_[index]);
   reports_.push_back(std::move(frame(index).report));
   flight_.retire();
   return true;

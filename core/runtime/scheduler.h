@@ -23,7 +23,7 @@ namespace quell {
 class Scheduler {
  public:
   /// For frames that ascend, when a first plan has been made.
-  Scheduler(SessionState& session, const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink);
+  Scheduler(SessionState& session, const RunFrames& frames, FrameSource& source, FrameSink& sink);
   /// As Session::run. Once.
   std::vector<FrameReport> run();
 

@@ -11,7 +11,7 @@ namespace {
 
 class SerialRun {
  public:
-  SerialRun(SessionState& session, const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink)
+  SerialRun(SessionState& session, const RunFrames& frames, FrameSource& source, FrameSink& sink)
       : session_(session), reader_(*session.graph, source, frames, session.pool, session.options.trace), sink_(sink) {}
 
   FrameReport run(std::int64_t frame) {
@@ -25,7 +25,7 @@ class SerialRun {
     report.ok = report.error.empty();
     FrameInputs inputs = reader_.take(report, *session_.running);
     if (report.ok) compute(report, std::move(inputs));
-    session_.running->history.advance(frame);
+    session_.finish(frame);
     report.seconds = std::chrono::duration<double>(Trace::Clock::now() - start).count();
     return report;
   }
@@ -57,11 +57,10 @@ class SerialRun {
 
 }  // namespace
 
-std::vector<FrameReport> run_serially(SessionState& session, const std::vector<std::int64_t>& frames, FrameSource& source,
-                                      FrameSink& sink) {
+std::vector<FrameReport> run_serially(SessionState& session, const RunFrames& frames, FrameSource& source, FrameSink& sink) {
   SerialRun serial(session, frames, source, sink);
   std::vector<FrameReport> reports;
-  for (const std::int64_t frame : frames) {
+  for (const std::int64_t frame : frames.computed) {
     if (session.cancelled()) break;
     try {
       reports.push_back(serial.run(frame));

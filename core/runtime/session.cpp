@@ -34,6 +34,14 @@ InputShapes shapes_of(const Graph& graph, const std::vector<Item>& items) {
   return shapes;
 }
 
+// Frames tell their sizes themselves. A plan for the usual size would end the history of frames that have another one.
+bool are_same_there(const InputShapes& a, const InputShapes& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.first == y.first && x.second.has_value() == y.second.has_value();
+  };
+  return std::ranges::equal(a, b, same);
+}
+
 }  // namespace
 
 Session::Session(std::shared_ptr<const Graph> graph, SessionOptions options)
@@ -44,16 +52,18 @@ Session::Session(Session&&) noexcept = default;
 const Plan* Session::plan() const { return state_->running ? &state_->running->plan : nullptr; }
 BufferPool& Session::pool() { return state_->pool; }
 
-std::vector<FrameReport> Session::run(const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink) {
+std::vector<FrameReport> Session::run(const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink,
+                                      const std::vector<std::int64_t>& later) {
   SessionState& s = *state_;
   require_ascending(*s.graph, frames);
   InputShapes offered;
   for (const GraphInput& input : s.graph->inputs) offered[input.name] = source.shape(input.name);
-  s.plan_for(offered);
+  if (!s.running || !are_same_there(offered, s.planned_for)) s.plan_for(offered);
   if (frames.empty()) return {};
   s.running->history.forget_from(frames.front());  // left from an earlier time that these frames were computed
-  if (s.options.schedule == Schedule::serial) return run_serially(s, frames, source, sink);
-  return Scheduler(s, frames, source, sink).run();
+  const RunFrames wanted{frames, later};
+  if (s.options.schedule == Schedule::serial) return run_serially(s, wanted, source, sink);
+  return Scheduler(s, wanted, source, sink).run();
 }
 
 std::map<std::string, Item> Session::push(std::int64_t frame, const std::map<std::string, Item>& inputs) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "quell/image/stream.h"
 #include "quell/runtime/executor.h"
 #include "quell/runtime/sanitize.h"
+#include "quell/runtime/saved_history.h"
 #include "quell/runtime/trace.h"
 
 namespace quell {
@@ -67,12 +69,21 @@ class Session {
   /// those that were finished, which may leave gaps. Not from within a oneTBB task, whose threads it waits for. Throws
   /// Error(usage) when the graph cannot run on what the source has or the numbers do not ascend, Error(memory) when not even one
   /// frame fits the limit.
-  std::vector<FrameReport> run(const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink);
+  /// `later`: frames that another run will compute. Edges that look ahead see them; without, they end with the last frame.
+  std::vector<FrameReport> run(const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink,
+                               const std::vector<std::int64_t>& later = {});
 
   /// In memory: computes one frame from its inputs by name, and returns the outputs and dumps by name. Throws Error(usage) when
   /// the inputs do not fit the graph, Error(frame) when a pass fails, Cancelled when cancelled. Inputs that look ahead need
   /// run().
   std::map<std::string, Item> push(std::int64_t frame, const std::map<std::string, Item>& inputs);
+
+  /// What another session needs in order to go on after the frames of run() that are through, those before the first one that
+  /// was not finished. Nothing when none is, or none since the size of the images changed.
+  std::optional<SavedHistory> save() const;
+  /// Before the first frame: goes on with what another session has saved. Throws Error(usage) when that is of another graph or
+  /// comes too late, and what making a plan throws.
+  void restore(const SavedHistory& saved);
 
   /// Null until the first frame told the sizes. Not while run() is at work.
   const Plan* plan() const;

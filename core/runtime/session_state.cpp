@@ -40,8 +40,14 @@ void SessionState::plan_for(const InputShapes& shapes) {
   lanes_.clear();  // they refer to the former plan
   running = std::move(next);
   window = chosen;
+  finished.reset();
   planned_for = shapes;
   pool.trim();  // blocks of the former sizes would hardly be asked for again
+}
+
+void SessionState::finish(std::int64_t frame) {
+  running->history.advance(frame);
+  finished = frame;
 }
 
 Lane& SessionState::lane(std::size_t index) {

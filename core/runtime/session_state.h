@@ -1,7 +1,9 @@
 // What a session keeps from frame to frame. Private to this box.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "quell/runtime/lane.h"
@@ -18,13 +20,16 @@ struct SessionState {
   HostServices services;
   InputShapes planned_for;
   Window window;
-  std::unique_ptr<PlanState> running;  ///< null until the first frame told the sizes
+  std::optional<std::int64_t> finished;  ///< up to this frame, all of run() that `running` had to do are through
+  std::unique_ptr<PlanState> running;    ///< null until the first frame told the sizes
 
   SessionState(std::shared_ptr<const Graph> checked, SessionOptions given);
 
   bool cancelled() const { return options.cancelled && options.cancelled(); }
   /// Whether inputs of these shapes need another plan.
   bool needs_plan(const InputShapes& shapes) const;
+  /// Lets go of what frames after this one, which is through as all before it are, cannot reach.
+  void finish(std::int64_t frame);
   /// Makes another plan when needed, before which nothing may be left running. A new size or a missing input is a new plan, and
   /// nothing older can be compared with it: history starts anew. Throws what make_plan and choose_window throw; the former plan
   /// then stays.

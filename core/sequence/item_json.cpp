@@ -13,6 +13,7 @@ namespace {
 /// With all digits that a double has; JSON has no NaN and no infinity, so those are null.
 std::string number(double value) {
   if (!std::isfinite(value)) return "null";
+  if (value == 0 && std::signbit(value)) return "-0.0";  // "-0" is an integer, which has no such zero
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text.precision(17);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "tests/core/runtime/schedule_naive.h"
 
@@ -59,6 +60,23 @@ TEST_P(RandomGraphs, YieldWhatTheirDefinitionSaysUnderEverySchedule) {
       ADD_FAILURE() << to_json(graph, testing::TempDir());
       return;
     }
+  }
+}
+
+TEST_P(RandomGraphs, YieldTheSameWhereSessionsGoOnWithWhatOthersHaveSaved) {
+  for (unsigned i = 0; i < kGraphsPerBlock; ++i) {
+    const unsigned seed = static_cast<unsigned>(GetParam()) * kGraphsPerBlock + i;
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const auto [scene, graph] = draw_case(seed);
+    const auto checked = load(graph);
+    const Outcome want = run(checked, graph.inputs, scene, with_dumps(serial(), graph));
+    Dice dice(seed);
+    std::set<std::int64_t> last_frames;
+    for (const std::int64_t frame : scene.frames)
+      if (dice.chance(30)) last_frames.insert(frame);
+    const Setting chosen = setting(static_cast<int>(seed % kSettings));
+    const SessionOptions options = seed % 4 == 0 ? serial() : concurrent(chosen);
+    expect_same(run_in_parts(checked, graph.inputs, scene, with_dumps(options, graph), last_frames), want);
   }
 }
 

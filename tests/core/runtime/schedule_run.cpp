@@ -159,6 +159,31 @@ Outcome run(const std::shared_ptr<const Graph>& graph, const std::vector<TestInp
   return outcome;
 }
 
+Outcome run_in_parts(const std::shared_ptr<const Graph>& graph, const std::vector<TestInput>& inputs, const Scene& scene,
+                     const SessionOptions& options, const std::set<std::int64_t>& last_frames) {
+  PatternSource source(inputs, scene);
+  RecordingSink sink(scene.unwritable);
+  Outcome outcome;
+  std::optional<SavedHistory> saved;
+  std::vector<std::int64_t> part;
+  for (const std::int64_t frame : scene.frames) {
+    part.push_back(frame);
+    if (frame != scene.frames.back() && !last_frames.contains(frame)) continue;
+    SessionOptions again = options;
+    again.cuts = scene.cuts;
+    Session session(graph, std::move(again));
+    session.pool().fill(0xff);
+    if (saved) session.restore(*saved);
+    const std::vector<std::int64_t> later(std::ranges::upper_bound(scene.frames, frame), scene.frames.end());
+    for (FrameReport& report : session.run(part, source, sink, later)) outcome.reports.push_back(std::move(report));
+    saved = session.save();
+    EXPECT_TRUE(saved && saved->frame == frame);
+    part.clear();
+  }
+  outcome.pictures = sink.take();
+  return outcome;
+}
+
 void expect_same_in_all_settings(const std::shared_ptr<const Graph>& graph, const std::vector<TestInput>& inputs,
                                  const Scene& scene, const std::vector<std::string>& dumps) {
   SessionOptions options = serial();

@@ -100,6 +100,9 @@ SessionOptions serial();
 /// reading and writing count among the threads.
 Outcome run(const std::shared_ptr<const Graph>& graph, const std::vector<TestInput>& inputs, const Scene& scene,
             SessionOptions options, bool keeps_busy = false);
+/// The same, where after each of these frames the session ends, and another one goes on with what it has saved.
+Outcome run_in_parts(const std::shared_ptr<const Graph>& graph, const std::vector<TestInput>& inputs, const Scene& scene,
+                     const SessionOptions& options, const std::set<std::int64_t>& last_frames);
 /// Runs serially, then in all 16 settings, and expects the same.
 void expect_same_in_all_settings(const std::shared_ptr<const Graph>& graph, const std::vector<TestInput>& inputs,
                                  const Scene& scene, const std::vector<std::string>& dumps = {});
