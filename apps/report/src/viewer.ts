@@ -236,12 +236,12 @@ export class Viewer {
   private listenToKeys() {
     document.addEventListener("keydown", (event) => {
       if (event.ctrlKey || event.altKey || event.metaKey) return;
-      const target = event.target as HTMLElement;
-      if (target.matches("select, textarea, input:not([type=range]):not([type=radio])")) return;
-      if (this.onKey(event, target)) event.preventDefault();
+      const { target } = event; // of an event made by a script it may be the document, which matches nothing
+      if (target instanceof Element && target.matches("select, textarea, input:not([type=range]):not([type=radio])")) return;
+      if (this.onKey(event)) event.preventDefault();
     });
   }
-  private onKey(event: KeyboardEvent, target: HTMLElement): boolean {
+  private onKey(event: KeyboardEvent): boolean {
     const digit = /^(?:Digit|Numpad)([1-9])$/.exec(event.code)?.[1];
     if (digit) {
       const index = numbered(this.report)[Number(digit) - 1];
@@ -267,7 +267,7 @@ export class Viewer {
     };
     const act = acts[event.key.toLowerCase()];
     if (act) act();
-    return act !== undefined || (target === this.canvas && this.movePixel(event));
+    return act !== undefined || (event.target === this.canvas && this.movePixel(event));
   }
   private movePixel(event: KeyboardEvent): boolean {
     const steps: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
