@@ -115,6 +115,8 @@ Json inputs_json(const Graph& graph, const Node& node) {
       JsonMembers input;
       input.add("port", desc.name).add("from", graph.describe(edge.from));
       if (edge.delay != 0) input.add("delay", edge.delay);
+      if (edge.initial.kind == Initial::Kind::constant) input.add("initial", numbers(edge.initial.constant));
+      if (edge.initial.kind == Initial::Kind::endpoint) input.add("initial", graph.describe(edge.initial.endpoint));
       inputs.push_back(input.take());
     }
   return make_json(std::move(inputs));
@@ -146,8 +148,9 @@ Json node_json(const ReportedGraph& graph, std::size_t index) {
   std::vector<Json> seconds;
   for (const FrameReport& frame : graph.frames)
     if (frame.ok && index < frame.node_seconds.size()) seconds.push_back(make_json(frame.node_seconds[index]));
-  return JsonMembers()
-      .add("name", node.name)
+  JsonMembers members;
+  if (!node.resets.empty()) members.add("resets", true);
+  return members.add("name", node.name)
       .add("pass", node.pass->id)
       .add("version", static_cast<std::int64_t>(node.pass->version))
       .add("summary", node.pass->summary)
@@ -159,10 +162,9 @@ Json node_json(const ReportedGraph& graph, std::size_t index) {
       .take();
 }
 
-Json files_json(const Graph& graph) {
-  return list(graph.files, [](const std::filesystem::path& file) {
-    return JsonMembers().add("name", file.string()).add("text", read_text(file, Fault::usage)->text).take();
-  });
+Json files_json(const ReportedGraph& graph) {
+  return list(graph.files,
+              [](const auto& file) { return JsonMembers().add("name", file.first).add("text", file.second).take(); });
 }
 
 template <class Member>
@@ -183,7 +185,7 @@ Json graph_json(const ReportedGraph& graph, const Report& report) {
       .add("doc", plan.graph->doc)
       .add("hash", graph_hash(*plan.graph))
       .add("edits", make_json(plan.graph->edits))
-      .add("files", files_json(*plan.graph))
+      .add("files", files_json(graph))
       .add("nodes", make_json(std::move(nodes)))
       .add("failed", make_json(failed))
       .add("figures", figures_json(graph.totals, graph.measured, report))

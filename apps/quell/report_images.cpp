@@ -5,17 +5,18 @@
 
 namespace quell::app {
 
-ReportSink::ReportSink(const ReportFrames& frames, std::set<std::string, std::less<>> results, Reference reference,
-                       PackedImages& packed)
-    : frames_(frames), results_(std::move(results)), reference_(reference), packed_(packed) {}
+ReportSink::ReportSink(const ReportFrames& frames, Names results, Weighed weighed, Reference reference, PackedImages& packed)
+    : frames_(frames), results_(std::move(results)), weighed_(std::move(weighed)), reference_(reference), packed_(packed) {}
 
 void ReportSink::write(std::string_view output, std::int64_t frame, const Item& item) {
   const Image* image = item.image();
   const bool is_result = results_.contains(output);
-  if (!image || !(is_result ? frames_.kept : frames_.inner).contains(frame)) return;
-  const bool is_exact = frames_.inner.contains(frame) && exact_.contains(output);
+  const bool is_inner = frames_.inner.contains(frame), is_shown = is_result && frames_.kept.contains(frame);
+  const bool is_exact =
+      (is_inner && weighed_.now.contains(output)) || (frames_.before.contains(frame) && weighed_.before.contains(output));
+  if (!image || !(is_inner || is_exact || is_shown)) return;
   const int number = packed_.add(pack(*image, is_exact ? Precision::exact : Precision::shown));
-  const bool has_map = is_result && image->type() == QUELL_TYPE_COLOR && reference_.series &&
+  const bool has_map = is_shown && image->type() == QUELL_TYPE_COLOR && reference_.series &&
                        (reference_.is_for_all || reference_.series->has(frame));
   const int map = has_map ? make_map(frame, *image) : -1;
   const std::lock_guard lock(mutex_);

@@ -14,6 +14,15 @@
 
 namespace quell::app {
 
+using Names = std::set<std::string, std::less<>>;
+
+/// Names, as a sink is told them, of what weights of filters are made of: it is kept exactly, since they have to reproduce what
+/// the passes gave.
+struct Weighed {
+  Names now;     ///< of inner frames
+  Names before;  ///< of the frames before these
+};
+
 /// A series of images of one name.
 struct ReportImage {
   enum class Kind {
@@ -35,6 +44,7 @@ struct ReportFrames {
   std::vector<std::int64_t> all;  ///< that are computed
   std::set<std::int64_t> kept;    ///< whose images are shown
   std::set<std::int64_t> inner;   ///< of these, whose inner images are shown, too
+  std::set<std::int64_t> before;  ///< that end right before one of `inner`: of what they left to it, images are kept, too
 };
 
 /// Keeps the images of outputs and dumps of one graph, and maps of errors of its color outputs. Thread-safe.
@@ -46,10 +56,7 @@ class ReportSink final : public FrameSink {
     bool is_for_all = false;  ///< one image for every frame
   };
   /// `results` are names of outputs. What is given must outlive the sink.
-  ReportSink(const ReportFrames& frames, std::set<std::string, std::less<>> results, Reference reference, PackedImages& packed);
-
-  /// Of the frames whose inner images are shown, these are kept exactly.
-  void keep_exactly(std::set<std::string, std::less<>> names) { exact_ = std::move(names); }
+  ReportSink(const ReportFrames& frames, Names results, Weighed weighed, Reference reference, PackedImages& packed);
 
   void write(std::string_view output, std::int64_t frame, const Item& item) override;
   bool uses_processor() const override { return true; }
@@ -62,8 +69,8 @@ class ReportSink final : public FrameSink {
  private:
   int make_map(std::int64_t frame, const Image& image);
   const ReportFrames& frames_;
-  const std::set<std::string, std::less<>> results_;
-  std::set<std::string, std::less<>> exact_;
+  const Names results_;
+  const Weighed weighed_;
   const Reference reference_;
   PackedImages& packed_;
   BufferPool pool_;

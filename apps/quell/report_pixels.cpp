@@ -106,10 +106,16 @@ PackedImage pack_map(const Image& map) {
 }
 
 int PackedImages::add(PackedImage image) {
+  const std::size_t hash = std::hash<std::string>()(image.text);
   const std::lock_guard lock(mutex_);
+  const auto [begin, end] = by_hash_.equal_range(hash);
+  for (auto known = begin; known != end; ++known)
+    if (images_[static_cast<std::size_t>(known->second)] == image) return known->second;
   bytes_ += image.text.size();
   images_.push_back(std::move(image));
-  return static_cast<int>(images_.size()) - 1;
+  const int number = static_cast<int>(images_.size()) - 1;
+  by_hash_.emplace(hash, number);
+  return number;
 }
 
 std::size_t PackedImages::bytes() const {

@@ -44,7 +44,8 @@ export interface GraphNode {
   summary: string;
   doc: string;
   params: Record<string, string>;
-  inputs: { port: string; from: string; delay?: number }[];
+  inputs: { port: string; from: string; delay?: number; initial?: number[] | string }[]; // initial: a constant or a source; else nothing
+  resets?: boolean; // the graph may end what earlier frames left it
   outputs: NodeOutput[];
   seconds: number[]; // of each frame that ended well
 }

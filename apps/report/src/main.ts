@@ -7,7 +7,7 @@ import { showProvenance } from "./provenance";
 import { firstState, Store } from "./state";
 import { Story } from "./story";
 import { showFigures } from "./table";
-import { filterNames } from "./taps";
+import { passNames } from "./taps";
 import { find } from "./text";
 import { Viewer } from "./viewer";
 
@@ -38,7 +38,7 @@ function showImages(report: Report) {
     },
     reportDrawn: () => viewer.drawn(),
     reportWeights: story.weightsOf.bind(story),
-    reportFilters: filterNames,
+    reportPasses: passNames,
   });
 }
 
