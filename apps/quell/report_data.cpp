@@ -1,6 +1,7 @@
 #include "report_data.h"
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 
 #include "machine.h"
@@ -50,7 +51,6 @@ Json image_json(const ReportImage& image, int graph) {
   members.add("name", image.name).add("kind", name_of(image.kind)).add("type", name(image.type));
   if (graph >= 0) members.add("graph", graph);
   members.add("frames", by_frame(image.frames));
-  if (!image.flip.empty()) members.add("flip", by_frame(image.flip));
   return members.take();
 }
 
@@ -75,7 +75,10 @@ Json metric_json(Metric metric) {
 
 Json values_json(const std::vector<Metric>& metrics, const MeasuredOutput& output) {
   std::vector<Json> values;
-  for (std::size_t i = 0; i < metrics.size(); ++i) values.push_back(make_json(value(metrics[i], output.scores[i])));
+  for (std::size_t i = 0; i < metrics.size(); ++i) {
+    const double figure = value(metrics[i], output.scores[i]);
+    values.push_back(std::isinf(figure) ? make_json("inf") : make_json(figure));  // JSON has no infinity, and NaN becomes null
+  }
   return make_json(std::move(values));
 }
 
@@ -263,6 +266,7 @@ Json report_data(const Report& report, const PackedImages& packed) {
   if (report.measuring)
     data.add("metrics", list(report.measuring->compare.metrics, metric_json))
         .add("display", info(report.measuring->compare.display).name)
+        .add("pixelsPerDegree", report.measuring->compare.pixels_per_degree)
         .add("reference", report.measuring->reference.files());
   return data.add("noisy", figures_json(report.inputs.totals, report.inputs.measured, report))
       .add("graphs", list(report.graphs, [&](const ReportedGraph& graph) { return graph_json(graph, report); }))

@@ -98,13 +98,6 @@ PackedImage pack(const Image& image, Precision precision) {
   return pack_bits(image, 4, "f32", [&](int x, int y, int c) { return std::bit_cast<std::uint32_t>(values.at(x, y, c)); });
 }
 
-PackedImage pack_map(const Image& map) {
-  const FloatImage errors = map.floats();
-  return pack_bits(map, 1, "u8", [&](int x, int y, int c) {
-    return static_cast<std::uint32_t>(std::lround(255 * std::clamp(errors.at(x, y, c), 0.0F, 1.0F)));
-  });
-}
-
 int PackedImages::add(PackedImage image) {
   const std::size_t hash = std::hash<std::string>()(image.text);
   const std::lock_guard lock(mutex_);

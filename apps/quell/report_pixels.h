@@ -19,7 +19,7 @@ std::uint16_t to_half(float value);
 struct PackedImage {
   Size size;
   int channels = 0;
-  std::string format;  ///< "f16"; "f32" where they do not do; "u32" for ids; "u8" for maps of 0..1 times 255
+  std::string format;  ///< "f16"; "f32" where they do not do; "u32" for ids
   std::string text;
   bool operator==(const PackedImage&) const = default;
 };
@@ -30,8 +30,6 @@ enum class Precision {
   exact,  ///< floats, unless half floats hold the same values
 };
 PackedImage pack(const Image& image, Precision precision = Precision::shown);
-/// Of a map of errors within 0..1, with 8 bits.
-PackedImage pack_map(const Image& map);
 
 /// All images of a report, by number. Thread-safe.
 class PackedImages {

@@ -18,11 +18,6 @@ Names names_of_results(const Plan& plan) {
   return names;
 }
 
-ReportSink::Reference reference_of(const std::optional<MeasuringOptions>& measuring) {
-  if (!measuring) return {};
-  return {&measuring->reference, measuring->compare.display, measuring->reference.is_single() && measuring->frames.size() == 1};
-}
-
 /// Passes whose weights the page tells (apps/report/src/taps.ts).
 const Names kMeans{"atrous",    "bilateral", "gaussian", "history_fix",    "joint_bilateral", "mix",           "moments", "nlm",
                    "reproject", "scale",     "taa",      "temporal_blend", "variance",        "variance_blur", "window"};
@@ -55,7 +50,7 @@ Item read_input(const ReportedGraph& graph, const std::string& input, std::int64
 
 ReportImage read_reference(const ReportFrames& frames, const MeasuringOptions& measuring, BufferPool& pool,
                            PackedImages& packed) {
-  ReportImage reference{"reference", ReportImage::Kind::reference, -1, QUELL_TYPE_COLOR, {}, {}};
+  ReportImage reference{"reference", ReportImage::Kind::reference, -1, QUELL_TYPE_COLOR, {}};
   for (const std::int64_t frame : frames.kept) try {
       if (interrupted()) throw Interrupted{};
       if (measuring.has_reference(frame)) reference.frames[frame] = packed.add(pack(measuring.reference.read(frame, pool)));
@@ -67,7 +62,7 @@ void read_noisy(const ReportedGraph& graph, const ReportFrames& frames, const We
                 const std::optional<MeasuringOptions>& measuring, Executor& executor, PackedImages& packed,
                 ReportedInputs& read) {
   BufferPool pool;
-  ReportSink sink(frames, {kNoisyInput}, weighed, reference_of(measuring), packed);
+  ReportSink sink(frames, {kNoisyInput}, weighed, packed);
   std::optional<MeasuringSink> measure;
   if (measuring) {
     MeasuringOptions options = *measuring;
@@ -128,7 +123,7 @@ Weighed find_weighed(const Plan& plan) {
 
 void run_for_report(ReportedGraph& graph, const ReportFrames& frames, const std::optional<MeasuringOptions>& measuring,
                     const SessionOptions& session, PackedImages& packed) {
-  ReportSink sink(frames, names_of_results(graph.job.plan), graph.weighed, reference_of(measuring), packed);
+  ReportSink sink(frames, names_of_results(graph.job.plan), graph.weighed, packed);
   std::optional<MeasuringSink> measure;
   if (measuring) measure.emplace(sink, *measuring);
   SessionOptions options = session;
@@ -173,7 +168,7 @@ ReportedInputs read_inputs(const std::vector<ReportedGraph>& graphs, const Repor
     read_noisy(*noisy->second, frames, weighed, measuring, executor, packed, read);
   if (measuring) read.images.push_back(read_reference(frames, *measuring, pool, packed));
   for (const auto& [name, graph] : inputs) {
-    ReportImage image{name, ReportImage::Kind::input, -1, QUELL_TYPE_COLOR, {}, {}};
+    ReportImage image{name, ReportImage::Kind::input, -1, QUELL_TYPE_COLOR, {}};
     if (name == kNoisyInput) continue;
     std::set<std::int64_t> wanted = frames.inner;
     if (weighed.before.contains(name)) wanted.insert(frames.before.begin(), frames.before.end());

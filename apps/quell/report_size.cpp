@@ -7,13 +7,15 @@ namespace {
 
 // Of values of noise, deflated and in Base64, which makes 4 characters of 3 bytes: the lowest 13 of a float's 32 bits, or 10 of a
 // half float's 16, do not get smaller. Measured on images of graphs/sample.
-constexpr double kOfFloat = 4.7, kOfHalf = 2.05, kOfMap = 1.2;
+constexpr double kOfFloat = 4.2, kOfHalf = 2.05;
+constexpr double kOfFlat = 0.1;  // of ids and masks, which have large areas of one value
 
 class Sum {
  public:
   void add(const Shape& shape, std::size_t frames, double bytes_per_value) {
     const double pixels = static_cast<double>(shape.size.width) * shape.size.height;
-    bytes_ += pixels * info(shape.type).channels * bytes_per_value * static_cast<double>(frames);
+    const bool is_flat = shape.type == QUELL_TYPE_MASK || shape.type == QUELL_TYPE_ID;
+    bytes_ += pixels * info(shape.type).channels * (is_flat ? kOfFlat : bytes_per_value) * static_cast<double>(frames);
   }
   double bytes() const { return bytes_; }
 
@@ -21,12 +23,10 @@ class Sum {
   double bytes_ = static_cast<double>(kReportPage.size());
 };
 
-/// What a frame that is kept shows of an image: of color also a map of its errors. In frames with inner images it is exact.
+/// An image of every frame that is kept; in those with inner images it may be exact.
 void add_series(Sum& sum, const Report& report, const Shape& shape) {
   sum.add(shape, report.frames.kept.size() - report.frames.inner.size(), kOfHalf);
   sum.add(shape, report.frames.inner.size(), kOfFloat);
-  if (report.measuring && shape.type == QUELL_TYPE_COLOR)
-    sum.add({QUELL_TYPE_SCALAR, shape.size}, report.frames.kept.size(), kOfMap);
 }
 
 void add_graph(Sum& sum, const Report& report, const ReportedGraph& graph) {

@@ -1,7 +1,8 @@
 // Pictures that are ready to be drawn: shaded images and maps, kept while nothing they depend on changes.
 import type { ImageSeries, Report } from "./data";
+import { flipMap, usualPixelsPerDegree } from "./flip";
 import { type Pixels, PixelStore } from "./pixels";
-import { shade, shadeDifference, shadeMap } from "./shade";
+import { displayLight, shade, shadeDifference, shadeMap } from "./shade";
 
 export interface Picture {
   canvas: HTMLCanvasElement;
@@ -29,6 +30,9 @@ export class Pictures {
     this.store = new PixelStore(report);
   }
 
+  private get display() {
+    return this.report.display ?? "reinhard";
+  }
   /** Nothing where the frame has no image. */
   series(image: ImageSeries, frame: number, exposure: number): Promise<Picture | null> {
     const number = image.frames[frame];
@@ -36,13 +40,30 @@ export class Pictures {
     const key = `series ${number} ${image.type === "color" ? exposure : 0}`;
     return this.keep(key, async () => {
       const pixels = await this.store.get(number);
-      return { canvas: toCanvas(shade(pixels, image.type, this.report.display ?? "reinhard", exposure)), pixels };
+      return { canvas: toCanvas(shade(pixels, image.type, this.display, exposure)), pixels };
     });
   }
-  flip(image: ImageSeries, frame: number): Promise<Picture | null> {
-    const number = image.flip?.[frame];
-    if (number === undefined) return Promise.resolve(null);
-    return this.keep(`flip ${number}`, async () => ({ canvas: toCanvas(shadeMap(await this.store.get(number))), pixels: null }));
+  /** FLIP between two images of colors, as the display shows them without more exposure. Nothing where sizes differ. */
+  flip(a: ImageSeries, b: ImageSeries, frame: number): Promise<Picture | null> {
+    const [left, right] = [a.frames[frame], b.frames[frame]];
+    const areColors = [a, b].every(({ type }) => type === "color" || type === "albedo");
+    if (left === undefined || right === undefined || !areColors) return Promise.resolve(null);
+    return this.keep(`flip ${Math.min(left, right)} ${Math.max(left, right)}`, async () => {
+      const errors = await this.flipErrors(a, b, frame);
+      const { width, height } = this.report.packed[left]!;
+      return errors && { canvas: toCanvas(shadeMap(errors, width, height)), pixels: null };
+    });
+  }
+  /** NaN where one of the pixels is not finite. */
+  async flipErrors(a: ImageSeries, b: ImageSeries, frame: number): Promise<Float32Array | null> {
+    const [p, q] = await Promise.all([a, b].map((image) => this.store.get(image.frames[frame]!)));
+    const { width, height } = p!;
+    if (width !== q!.width || height !== q!.height) return null;
+    const light = [displayLight(p!, a.type, this.display), displayLight(q!, b.type, this.display)] as const;
+    const errors = await flipMap(...light, width, height, this.report.pixelsPerDegree ?? usualPixelsPerDegree);
+    for (const image of [p!, q!])
+      for (let i = 0; i < image.data.length; ++i) if (!Number.isFinite(image.value(i))) errors[i % errors.length] = NaN;
+    return errors;
   }
   difference(a: ImageSeries, b: ImageSeries, frame: number, exposure: number): Promise<Picture | null> {
     const [left, right] = [a.frames[frame], b.frames[frame]];

@@ -1,7 +1,7 @@
 // What the viewer shows, and who wants to know when that changes.
 import type { Report } from "./data";
 
-export type Mode = "wipe" | "side" | "left" | "difference" | "flip";
+export type Mode = "wipe" | "side" | "left" | "difference" | "flip" | "errors";
 
 export interface State {
   left: number; // of Report.images

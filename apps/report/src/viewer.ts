@@ -22,7 +22,9 @@ export class Viewer {
   private hover: [number, number] | null = null;
   private drawing = 0;
   private loading = 0;
-  private playing = 0;
+  private playing = false;
+  private timer = 0;
+  private turns = 0; // of playing
 
   constructor(
     private readonly store: Store,
@@ -69,17 +71,20 @@ export class Viewer {
     const frame = find<HTMLInputElement>("frame");
     frame.max = String(this.report.kept.length - 1);
     frame.disabled = find<HTMLButtonElement>("play").disabled = this.report.kept.length < 2;
-    if (!this.report.images.some((image) => image.flip)) {
-      const flip = document.querySelector<HTMLInputElement>("#modes input[value=flip]")!;
-      flip.disabled = true;
-      flip.parentElement!.title = "There is no reference.";
+    if (!this.reference) {
+      const errors = document.querySelector<HTMLInputElement>("#modes input[value=errors]")!;
+      errors.disabled = true;
+      errors.parentElement!.title = "There is no reference.";
     }
   }
 
+  private get reference() {
+    return this.report.images.find((image) => image.kind === "reference");
+  }
   private choose(side: "left" | "right", index: number) {
     const image = this.report.images[index];
     if (!image) return;
-    const frames = Object.keys(image.frames).map(Number);
+    const frames = Object.keys(image.frames).map(Number).filter((frame) => this.report.kept.includes(frame));
     const frame = image.frames[this.store.state.frame] === undefined ? frames.at(-1) : this.store.state.frame;
     this.store.set({ [side]: index, ...(frame === undefined ? {} : { frame }) });
   }
@@ -96,18 +101,19 @@ export class Viewer {
     this.store.set({ exposure: Math.max(-8, Math.min(8, exposure)) });
   }
   private play(on: boolean) {
-    clearTimeout(this.playing);
-    this.playing = 0;
+    clearTimeout(this.timer);
+    this.playing = on;
     find("play").setAttribute("aria-pressed", String(on));
     find("play").textContent = on ? "Pause" : "Play";
+    const turn = ++this.turns;
     const next = () => {
       this.step(1, true);
-      // A frame is shown before the next one is asked for, however long that takes.
+      // A frame is shown before the next one is asked for, however long that takes; meanwhile it may be stopped and started again.
       void this.ready().then(() => {
-        if (this.playing) this.playing = window.setTimeout(next, 1000 / 8);
+        if (this.playing && turn === this.turns) this.timer = window.setTimeout(next, 1000 / 8);
       });
     };
-    if (on) this.playing = window.setTimeout(next, 0);
+    if (on) next();
   }
   private exchange() {
     const { left, right } = this.store.state;
@@ -214,7 +220,7 @@ export class Viewer {
 
   /** Between the left and the right picture, in one pane. */
   private get hasLine() {
-    return this.store.state.mode === "wipe" || this.store.state.mode === "flip";
+    return this.store.state.mode === "wipe" || this.store.state.mode === "errors";
   }
   private get panes() {
     return this.store.state.mode === "side" ? 2 : 1;
@@ -255,6 +261,7 @@ export class Viewer {
       l: () => this.setMode("left"),
       d: () => this.setMode("difference"),
       f: () => this.setMode("flip"),
+      e: () => this.setMode("errors"),
       p: () => this.play(!this.playing),
       ",": () => this.step(-1),
       ".": () => this.step(1),
@@ -308,12 +315,18 @@ export class Viewer {
     find<HTMLInputElement>("wipe").value = String(Math.round(100 * state.wipe));
     find("wipe-label").hidden = !this.hasLine;
     const names = { left: title(this.report, image(state.left)), right: title(this.report, image(state.right)) };
-    const both = { wipe: 1, side: 1, left: 0, difference: 0, flip: 1 }[state.mode];
-    find("left-name").textContent =
-      state.mode === "difference" ? `| ${names.left} − ${names.right} |` : state.mode === "flip" ? `FLIP of ${names.left}` : names.left;
-    find("right-name").textContent = state.mode === "flip" ? `FLIP of ${names.right}` : names.right;
-    find("right-name").hidden = !both;
-    const what = { wipe: "wiped over", side: "beside", left: "hides", difference: "less", flip: "errors by FLIP, beside those of" }[state.mode];
+    const tags = {
+      wipe: [names.left, names.right],
+      side: [names.left, names.right],
+      left: [names.left],
+      difference: [`| ${names.left} − ${names.right} |`],
+      flip: [`FLIP of ${names.left} and ${names.right}`],
+      errors: [`errors of ${names.left}`, `errors of ${names.right}`],
+    }[state.mode];
+    find("left-name").textContent = tags[0]!;
+    find("right-name").textContent = tags[1] ?? "";
+    find("right-name").hidden = tags.length < 2;
+    const what = { wipe: "wiped over", side: "beside", left: "hides", difference: "less", flip: "FLIP between it and", errors: "errors by FLIP, beside those of" }[state.mode];
     this.canvas.setAttribute("aria-label", `Picture of frame ${state.frame}: ${names.left}, ${what} ${names.right}`);
     for (const button of document.querySelectorAll<HTMLElement>("#numbers button")) {
       const index = Number(button.dataset["image"]);
@@ -343,29 +356,36 @@ export class Viewer {
     const turn = ++this.loading;
     const { left, right, mode, frame, exposure } = this.store.state;
     const [a, b] = [this.report.images[left]!, this.report.images[right]!];
-    const of = (image: ImageSeries) => (mode === "flip" ? this.pictures.flip(image, frame) : this.pictures.series(image, frame, exposure));
-    const shown =
-      mode === "difference"
-        ? { left: await this.pictures.difference(a, b, frame, exposure), right: null }
-        : { left: await of(a), right: mode === "left" ? null : await of(b) };
+    const of = (image: ImageSeries) =>
+      mode === "errors" ? this.pictures.flip(this.reference!, image, frame) : this.pictures.series(image, frame, exposure);
+    const between = mode === "difference" || mode === "flip";
+    const shown = between
+      ? { left: await (mode === "flip" ? this.pictures.flip(a, b, frame) : this.pictures.difference(a, b, frame, exposure)), right: null }
+      : { left: await of(a), right: mode === "left" ? null : await of(b) };
     if (turn !== this.loading) return; // something else was asked for meanwhile
     this.shown = shown;
     this.canvas.dataset["frame"] = String(frame);
-    const absent = [
-      ...(shown.left ? [] : [mode === "difference" ? "the difference" : title(this.report, a)]),
-      ...(shown.right || mode === "left" || mode === "difference" ? [] : [title(this.report, b)]),
-    ];
-    find("absent").hidden = absent.length === 0;
-    find("absent").textContent =
-      mode === "flip" ? `no errors of ${absent.join(" and ")}` : `frame ${frame} of ${absent.join(" and ")} is not in this report`;
+    this.tellAbsent(shown);
     this.resize();
     this.readOut();
     this.prefetch();
   }
+  private tellAbsent(shown: Shown) {
+    const { left, right, mode, frame } = this.store.state;
+    const isMissing = (index: number) => this.report.images[index]!.frames[frame] === undefined;
+    const pairs: [number, Picture | null][] = mode === "left" ? [[left, shown.left]] : [[left, shown.left], [right, shown.right]];
+    const isBetween = mode === "difference" || mode === "flip";
+    const names = pairs.filter(([index, picture]) => (isBetween ? isMissing(index) : !picture)).map(([index]) => title(this.report, this.report.images[index]!));
+    let text = names.length ? `frame ${frame} of ${names.join(" and ")} is not in this report` : "";
+    if (mode === "errors" && names.length) text = `no errors of ${names.join(" and ")}`;
+    if (isBetween && !text && !shown.left) text = mode === "flip" ? "FLIP is between colors of one size" : "these have other sizes or channels";
+    find("absent").hidden = text === "";
+    find("absent").textContent = text;
+  }
   /** All frames of what is shown, the next ones first, while nothing else is to be done: so that scrubbing waits for nothing. */
   private prefetch() {
     const { left, right, mode, frame, exposure } = this.store.state;
-    if (mode === "difference" || mode === "flip") return;
+    if (mode === "difference" || mode === "flip" || mode === "errors") return;
     const { kept, images } = this.report;
     const shown = mode === "left" ? [left] : [left, right];
     const picture = this.shown.left ?? this.shown.right;

@@ -1,7 +1,7 @@
 // quell report, as a person meets it: made by the program, opened in headless Chromium from disk.
 //   node report.test.mjs QUELL SOURCE_DIR
 import assert from "node:assert/strict";
-import { cpSync, mkdirSync, writeFileSync } from "node:fs";
+import { cpSync, mkdirSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { before, test } from "node:test";
 import { readExr } from "./exr.mjs";
@@ -53,12 +53,12 @@ test("number keys switch images, and letters how they are shown", async () => {
   await report.press("x");
   assert.deepEqual(await chosen(), ["games202", "reference"]);
   const pictures = new Set();
-  for (const [key, mode] of [["w", "wipe"], ["s", "side"], ["l", "left"], ["d", "difference"], ["f", "flip"]]) {
+  for (const [key, mode] of [["w", "wipe"], ["s", "side"], ["l", "left"], ["d", "difference"], ["f", "flip"], ["e", "errors"]]) {
     await report.press(key);
     assert.equal(await report.page.locator("#modes input:checked").getAttribute("value"), mode);
     pictures.add(await report.picture());
   }
-  assert.equal(pictures.size, 5);
+  assert.equal(pictures.size, 6);
   await report.end();
 });
 
@@ -98,6 +98,76 @@ test("an image differs from itself nowhere, and an exposure makes it brighter", 
   assert.ok(bright[0] > dark[0] + 20, `${bright} after ${dark}`);
   assert.equal(await report.page.textContent("#exposure-text"), "+1");
   await report.end();
+});
+
+test("FLIP between any two images, and against the reference, is what quell compare measures", async () => {
+  run("run", "games202", sample, "--frames", kFrames, "-o", "games", "--compression", "none", "--type", "half");
+  const report = await open();
+  const { images } = await report.page.evaluate(() => JSON.parse(document.getElementById("report").textContent));
+  const index = (kind, graph) => images.findIndex((image) => image.kind === kind && (graph === undefined || image.graph === graph));
+  const [reference, games, svgf] = [index("reference"), index("result", 0), index("result", 1)];
+  const files = { [reference]: join(sample, "reference.####.exr"), [games]: "games/color.####.exr", [svgf]: "svgf/color.####.exr" };
+  for (const [a, b] of [[reference, svgf], [games, svgf]]) {
+    const told = run("compare", files[a], `it=${files[b]}`, "--frames", "1-2", "--metrics", "flip", "--csv", "-").toString();
+    const lines = told.trim().split("\n").map((line) => line.split(","));
+    for (const frame of [1, 2]) {
+      const want = Number(lines.find((line) => line[0] === String(frame))[lines[0].indexOf("flip")]);
+      const errors = await report.page.evaluate((what) => window.reportFlip(...what), [a, b, frame]);
+      assert.equal(errors.length, 320 * 180);
+      const got = errors.reduce((sum, error) => sum + error, 0) / errors.length;
+      assert.ok(want > 0.02 && Math.abs(got - want) < 1e-4, `frame ${frame} of ${files[b]}: ${got}, not ${want}`);
+    }
+  }
+  await report.press("3", "Shift+Digit3", "f");
+  assert.deepEqual(await report.color(0.5, 0.5), [0, 0, 4]); // the color of no error
+  assert.match(await report.page.textContent("#left-name"), /FLIP of games202 and games202/);
+  await report.press("e", "Shift+Digit2");
+  assert.notDeepEqual(await report.color(0.25, 0.5), [0, 0, 4]);
+  assert.deepEqual(await report.color(0.75, 0.5), [0, 0, 4]); // of the reference itself
+  await report.page.selectOption("#left", { label: "svgf: reproject.valid" });
+  await report.press("f");
+  assert.equal(await report.page.textContent("#absent"), "FLIP is between colors of one size");
+  await report.end();
+});
+
+test("figures of equal images are told as infinite", async () => {
+  run("report", sample, "games202", "--frames", "1-2", "--reference", "color", "--metrics", "psnr,mse", "--inner", "none", "-o", "equal.html");
+  const report = await open("equal.html");
+  const row = await report.page.locator("#figures tbody tr", { hasText: "noisy" }).locator("td").allTextContents();
+  assert.deepEqual(row.slice(0, 2), ["∞", "0.00000"]);
+  assert.equal(await report.page.locator("#plots .plot svg").first().locator("[aria-label=line] path").count(), 1);
+  await report.end();
+});
+
+test("Play that is pressed twice goes one frame at a time", async () => {
+  const report = await open();
+  const steps = await report.page.evaluate(async () => {
+    for (let i = 0; i < 5; ++i) document.getElementById("play").click();
+    let count = 0;
+    const observer = new MutationObserver(() => ++count);
+    observer.observe(document.getElementById("frame-text"), { childList: true });
+    await new Promise((done) => setTimeout(done, 1000));
+    document.getElementById("play").click();
+    return count;
+  });
+  assert.ok(steps >= 2 && steps <= 9, `${steps} frames in a second`); // 8 of one timer
+  assert.equal(await report.page.textContent("#play"), "Play");
+  await report.end();
+});
+
+test("what is not finite is shown as such in a difference", async () => {
+  const report = await open();
+  const difference = await report.page.evaluate(() => window.reportDifference([NaN, 1, Infinity, 2], [1, 1, Infinity, 1.5]));
+  assert.deepEqual(difference, [[255, 0, 255], [0, 0, 0], [255, 0, 255], [128, 128, 128]]);
+  await report.end();
+});
+
+test("three graphs on the sample make less than 40 MB in less than two minutes", () => {
+  const start = Date.now();
+  run("report", sample, "games202", "svgf", "best", "-o", "three.html");
+  const [seconds, bytes] = [(Date.now() - start) / 1000, statSync(join(folder, "three.html")).size];
+  console.log(`${(bytes / 1e6).toFixed(1)} MB in ${seconds.toFixed(1)} s`);
+  assert.ok(bytes < 40e6 && seconds < 120);
 });
 
 test("zoom goes down to pixels, keeps its place and is the same for both images", async () => {
