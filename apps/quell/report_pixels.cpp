@@ -29,7 +29,7 @@ std::string to_base64(const std::vector<std::uint8_t>& bytes) {
 
 std::string deflate_to_text(const std::vector<std::uint8_t>& bytes) {
   // Byte planes of noise hardly get smaller with more effort than this.
-  constexpr int kEffort = 4;
+  constexpr int kEffort = 6;
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
   std::vector<std::uint8_t> packed(size);
   const int status = compress2(packed.data(), &size, bytes.data(), static_cast<uLong>(bytes.size()), kEffort);
