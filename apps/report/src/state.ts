@@ -48,3 +48,11 @@ export function firstState(report: Report): State {
   const frame = report.inner.at(-1) ?? report.kept.at(-1) ?? 0;
   return { left, right, mode: "wipe", frame, exposure: 0, wipe: 0.5, pixel: null };
 }
+
+/** One picture of two images. */
+export function isBetween(mode: Mode): boolean {
+  return mode === "difference" || mode === "flip";
+}
+export function referenceOf(report: Report) {
+  return report.images.find((image) => image.kind === "reference");
+}
