@@ -93,6 +93,7 @@ export function showControls(report: Report, state: State, hasLine: boolean) {
   find("exposure-text").textContent = `${state.exposure > 0 ? "+" : ""}${state.exposure}`.replace("-", "−");
   find<HTMLInputElement>("wipe").value = String(Math.round(100 * state.wipe));
   find("wipe-label").hidden = !hasLine;
+  find<HTMLInputElement>("exposure").disabled = state.mode === "flip" || state.mode === "errors"; // which are about the display as it is
   showNames(report, state);
   for (const button of document.querySelectorAll<HTMLElement>("#numbers button")) {
     const index = Number(button.dataset["image"]);

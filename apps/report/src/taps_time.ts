@@ -10,12 +10,13 @@ function history(f: Filter): number[] | null {
   const image = f.input("history");
   return image && (f.own("valid") ?? 1) > 0.5 ? image.all(f.x, f.y) : null;
 }
-/** The new frame's share of the mean, and the rest. */
-function blend(f: Filter, share: number, own: number[], old: number[]): Tap[] {
+/** The new frame's share of the mean, and the rest, of a history that may have been limited before. */
+function blend(f: Filter, share: number, own: number[], old: number[], limited = old): Tap[] {
   const at = { x: f.x, y: f.y };
+  const isLimited = limited.some((value, c) => Math.abs(value - old[c]!) > 1e-9 * Math.abs(old[c]!)); // not by the way to YCoCg and back
   return [
     { ...at, weight: share, values: own },
-    { ...at, weight: 1 - share, port: "history", values: old },
+    { ...at, weight: 1 - share, port: isLimited ? "history, limited" : "history", values: limited },
   ];
 }
 
@@ -61,7 +62,7 @@ export function temporalBlend(f: Filter): Tap[] {
   const convert = isYcocg ? toYcocg : (color: number[]) => color;
   const [window, center] = [neighbors(f, f.number("clamp_radius"), convert), convert(own)];
   const limited = convert(old).map((value, c) => clampTo(blendLimits(f, window[c]!, center[c]!), value));
-  return blend(f, share, own, isYcocg ? toRgb(limited) : limited);
+  return blend(f, share, own, old, isYcocg ? toRgb(limited) : limited);
 }
 
 /** Of luminance and its square, not of colors. */
@@ -104,7 +105,7 @@ export function taa(f: Filter): Tap[] {
   const limited = taaLimit(f, toYcocg(old));
   const worth = (luma: number) => (f.is("weigh") ? 1 / (1 + Math.max(luma, 0)) : 1);
   const [now, before] = [f.number("alpha") * worth(toYcocg(own)[0]!), (1 - f.number("alpha")) * worth(limited[0]!)];
-  return blend(f, now / (now + before), own, toRgb(limited));
+  return blend(f, now / (now + before), own, old, toRgb(limited));
 }
 
 export function window(f: Filter): Tap[] {

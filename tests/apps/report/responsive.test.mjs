@@ -45,7 +45,7 @@ function writeReport() {
     writeExr(join(folder, `shot/color.${String(frame).padStart(4, "0")}.exr`), width, height, makeNoise(frame));
   const graph = { quell: 1, inputs: { color: "color" }, nodes: { blur: { pass: "gaussian", in: { image: "color" }, params: { sigma: 1 } } }, outputs: { color: "blur.image" } };
   writeFileSync(join(folder, "blur.json"), JSON.stringify(graph));
-  execFileSync(quell, ["report", "shot", "blur.json", "--inner", "none", "-o", "report.html", "-q"], { cwd: folder, stdio: ["ignore", "inherit", "pipe"] });
+  execFileSync(quell, ["report", "shot", "blur.json", "-o", "report.html", "-q"], { cwd: folder, stdio: ["ignore", "inherit", "pipe"] });
   console.log(`a report of ${(statSync(join(folder, "report.html")).size / 1e6).toFixed(0)} MB`);
 }
 

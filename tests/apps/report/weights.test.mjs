@@ -155,6 +155,12 @@ test("weights of means over time reproduce what their passes gave, with the fram
   const counts = await judgeAll(report, temporal);
   assert.ok(counts.catmull.includes(16), `catmull: ${counts.catmull}`);
   assert.ok(counts.rescued.some((count) => count > 4), `rescued: ${counts.rescued}`);
+  const grid = Array.from({ length: 70 }, (_, i) => [7 * (i % 10) + 3, 7 * Math.floor(i / 10) + 2]);
+  for (const name of ["blend", "blend_range", "blend_ycocg", "blend_published", "taa", "taa_range", "taa_variance"]) {
+    const found = await report.page.evaluate(([node, all]) => Promise.all(all.map((at) => window.reportWeights(0, node, ...at))), [name, grid]);
+    found.forEach((weights, i) => judge(name, grid[i], weights));
+    assert.ok(found.some(({ taps }) => taps.some((tap) => tap.port === "history, limited")), `${name} limits no history here`);
+  }
   for (const name of ["blend", "taa", "moments"]) assert.ok(counts[name].includes(2), `${name} never has a history`);
   assert.ok(counts.window.includes(3), `window: ${counts.window}`);
   assert.ok(counts.fix.some((count) => count > 5), `fix: ${counts.fix}`);
