@@ -170,3 +170,23 @@ test("weights of means over time reproduce what their passes gave, with the fram
   assert.deepEqual(await row.locator("tbody td:first-child").allTextContents(), ["history", "color"]);
   await report.end();
 });
+
+test("weights reproduce what passes gave in graphs that ship with quell, too", async () => {
+  const graphs = ["best", "relax_lite", "svgf_falcor", "games202"];
+  run("report", sample, ...graphs, "--frames", "1-3", "--crop", "120,40,120,100", "-o", "shipped.html");
+  const report = await open("shipped.html");
+  const { weighted } = await report.page.evaluate(() => window.reportPasses);
+  const data = await report.page.evaluate(() => JSON.parse(document.getElementById("report").textContent).graphs);
+  let count = 0;
+  for (const [graph, { label, nodes }] of data.entries())
+    for (const { name, pass } of nodes.filter((node) => weighted.includes(node.pass)))
+      for (const [x, y] of places) {
+        const found = await report.page.evaluate((what) => window.reportWeights(...what), [graph, name, x, y]);
+        if (found === "no history was found here") continue;
+        assert.ok(found?.taps, `${name} (${pass}) of ${label} at ${x}, ${y}: ${found}`);
+        judge(`${name} of ${label}`, [x, y], found);
+        ++count;
+      }
+  assert.ok(count > 150, `${count} pixels`);
+  await report.end();
+});
