@@ -16,7 +16,6 @@ const toXyz = [
   [0.21263682167732, 0.71518298184124, 0.07218019648142],
   [0.01933062015248, 0.11919716364021, 0.95037258700543],
 ].map((row) => row.map((value) => value / (row[0]! + row[1]! + row[2]!))) as Matrix;
-const times = (m: Matrix, r: number, g: number, b: number) => m.map((row) => row[0]! * r + row[1]! * g + row[2]! * b) as [number, number, number];
 
 /** Filters are even or odd: their weights from the center to one end. */
 function makeFilters(pixelsPerDegree: number) {
@@ -27,7 +26,7 @@ function makeFilters(pixelsPerDegree: number) {
   const radius = Math.ceil(3 * Math.sqrt(0.04 / (2 * Math.PI ** 2)) * pixelsPerDegree); // of the widest, for all
   const blur = (b: number) => {
     const weights = bell(radius, exponent(b));
-    return scaled(weights, 1 / total(weights));
+    return scaled(weights, 1 / total(weights)).filter((w) => w > 1e-10); // what is left out would not show in a float
   };
   const yellow = [[34.1, 0.04], [13.5, 0.025]].map(([a, b]) => ({ weights: bell(radius, exponent(b!)), share: a! * Math.sqrt(Math.PI / b!) }));
   const height = yellow.reduce((sum, { weights, share }) => sum + share * total(weights) ** 2, 0);
@@ -64,22 +63,23 @@ function toOpponent(light: Float32Array): Float32Array {
 
 /** Across rows, into a row that goes on beyond both ends by the filters' radius. Odd filters have no weight at the center. */
 function filterAcross(plane: Float32Array, width: number, height: number, y: number, weights: number[], sign: number, radius: number, out: Row) {
-  out.fill(0);
-  weights.forEach((w, i) => {
-    const above = Math.max(0, y - i) * width;
-    const below = Math.min(height - 1, y + i) * width;
-    if (i === 0) for (let x = 0; x < width; ++x) out[radius + x]! += w * plane[above + x]!;
-    else for (let x = 0; x < width; ++x) out[radius + x]! += w * (plane[below + x]! + sign * plane[above + x]!);
-  });
+  const center = y * width;
+  for (let x = 0; x < width; ++x) out[radius + x] = weights[0]! * plane[center + x]!;
+  for (let i = 1; i < weights.length; ++i) {
+    const w = weights[i]!;
+    const [above, below] = [Math.max(0, y - i) * width, Math.min(height - 1, y + i) * width];
+    for (let x = 0; x < width; ++x) out[radius + x]! += w * (plane[below + x]! + sign * plane[above + x]!);
+  }
   out.fill(out[radius]!, 0, radius);
   out.fill(out[radius + width - 1]!, radius + width);
 }
 /** Along the row, added to what is there. */
 function filterAlong(row: Row, width: number, weights: number[], sign: number, radius: number, out: Row) {
-  weights.forEach((w, i) => {
-    if (i === 0) for (let x = 0; x < width; ++x) out[x]! += w * row[radius + x]!;
-    else for (let x = 0; x < width; ++x) out[x]! += w * (row[radius + x + i]! + sign * row[radius + x - i]!);
-  });
+  for (let x = 0; x < width; ++x) out[x]! += weights[0]! * row[radius + x]!;
+  for (let i = 1; i < weights.length; ++i) {
+    const w = weights[i]!;
+    for (let x = 0; x < width; ++x) out[x]! += w * (row[radius + x + i]! + sign * row[radius + x - i]!);
+  }
 }
 
 /** What an observer sees of a row: colors, edges and points. */
@@ -123,37 +123,65 @@ function inverse(m: Matrix): Matrix {
 }
 const toRgb = inverse(toXyz);
 
-/** L, and a and b made smaller by 0.01 L (Hunt), of light within 0..1. */
-function adjustedLab(r: number, g: number, b: number): [number, number, number] {
-  const curve = (t: number) => (t > 216 / 24389 ? Math.cbrt(t) : ((t * 24389) / 27 + 16) / 116);
-  const [fx, fy, fz] = times(toXyz, r, g, b).map(curve) as [number, number, number];
+/** L, and a and b made smaller by 0.01 L (Hunt), of light within 0..1, into `lab`: a pixel makes no garbage. */
+function adjustedLab(r: number, g: number, b: number, lab: Row) {
+  const fx = labCurve(toXyz[0][0]! * r + toXyz[0][1]! * g + toXyz[0][2]! * b);
+  const fy = labCurve(toXyz[1][0]! * r + toXyz[1][1]! * g + toXyz[1][2]! * b);
+  const fz = labCurve(toXyz[2][0]! * r + toXyz[2][1]! * g + toXyz[2][2]! * b);
   const l = 116 * fy - 16;
-  return [l, 0.01 * l * 500 * (fx - fy), 0.01 * l * 200 * (fy - fz)];
+  lab[0] = l;
+  lab[1] = 0.01 * l * 500 * (fx - fy);
+  lab[2] = 0.01 * l * 200 * (fy - fz);
 }
-function hyab(a: number[], b: number[]): number {
-  return Math.abs(a[0]! - b[0]!) + Math.hypot(a[1]! - b[1]!, a[2]! - b[2]!);
+function labCurve(t: number): number {
+  return t > 216 / 24389 ? Math.cbrt(t) : ((t * 24389) / 27 + 16) / 116;
 }
-const largest = hyab(adjustedLab(0, 1, 0), adjustedLab(0, 0, 1)) ** colorPower;
+function length(x: number, y: number): number {
+  return Math.sqrt(x * x + y * y); // Math.hypot takes ten times as long
+}
+function clamp(value: number): number {
+  return value < 0 ? 0 : value > 1 ? 1 : value;
+}
+const labs = [new Float64Array(3), new Float64Array(3)] as const;
+/** HyAB of the two in `labs`, to the power of 0.7. */
+function colorDifference(): number {
+  const [a, b] = labs;
+  return (Math.abs(a[0]! - b[0]!) + length(a[1]! - b[1]!, a[2]! - b[2]!)) ** colorPower;
+}
+adjustedLab(0, 1, 0, labs[0]);
+adjustedLab(0, 0, 1, labs[1]);
+const largest = colorDifference();
+const kneeAt = knee * largest;
 
-function seenLab(row: SeenRow, x: number): [number, number, number] {
-  const [y, redGreen, yellow] = row.colors.map((values) => values[x]!) as [number, number, number];
-  const clamp = (value: number) => Math.min(1, Math.max(0, value));
-  const [r, g, b] = times(toRgb, y + redGreen, y, y - yellow);
-  return adjustedLab(clamp(r), clamp(g), clamp(b));
+function seeColor(row: SeenRow, x: number, lab: Row) {
+  const y = row.colors[0][x]!;
+  const [rx, gx, bx] = [y + row.colors[1][x]!, y, y - row.colors[2][x]!];
+  const light = (m: number[]) => clamp(m[0]! * rx + m[1]! * gx + m[2]! * bx);
+  adjustedLab(light(toRgb[0]), light(toRgb[1]), light(toRgb[2]), lab);
 }
 function errorAt(a: SeenRow, b: SeenRow, x: number): number {
-  const power = hyab(seenLab(a, x), seenLab(b, x)) ** colorPower;
-  const kneeAt = knee * largest;
+  seeColor(a, x, labs[0]);
+  seeColor(b, x, labs[1]);
+  const power = colorDifference();
   const color = power < kneeAt ? (kneeError / kneeAt) * power : kneeError + ((power - kneeAt) / (largest - kneeAt)) * (1 - kneeError);
-  const length = (row: SeenRow, first: number) => Math.hypot(row.features[first]![x]!, row.features[first + 1]![x]!);
-  const feature = Math.max(Math.abs(length(a, 0) - length(b, 0)), Math.abs(length(a, 2) - length(b, 2)));
-  return Math.min(1, color) ** (1 - Math.sqrt(Math.min(1, feature / Math.SQRT2)));
+  const [p, q] = [a.features, b.features];
+  const edges = Math.abs(length(p[0][x]!, p[1][x]!) - length(q[0][x]!, q[1][x]!));
+  const points = Math.abs(length(p[2][x]!, p[3][x]!) - length(q[2][x]!, q[3][x]!));
+  return Math.min(1, color) ** (1 - Math.sqrt(Math.min(1, Math.max(edges, points) / Math.SQRT2)));
 }
 
 const kSlice = 12; // ms of work, then the page may draw
 
-/** The error of each pixel, 0..1, of linear light of 0..1, plane after plane. Long work is done in slices. */
-export async function flipMap(a: Float32Array, b: Float32Array, width: number, height: number, pixelsPerDegree: number): Promise<Float32Array> {
+/**
+ * The error of each pixel, 0..1, of linear light of 0..1, plane after plane. Long work is done in slices, and given up (null) when
+ * it is wanted no more.
+ */
+export async function flipMap(
+  [a, b]: readonly [Float32Array, Float32Array],
+  { width, height }: { width: number; height: number },
+  pixelsPerDegree: number,
+  isWanted: () => boolean,
+): Promise<Float32Array | null> {
   const filters = makeFilters(pixelsPerDegree);
   const [rowA, rowB] = [a, b].map((light) => new SeenRow(filters, toOpponent(light), width, height)) as [SeenRow, SeenRow];
   const errors = new Float32Array(width * height);
@@ -164,6 +192,7 @@ export async function flipMap(a: Float32Array, b: Float32Array, width: number, h
     for (let x = 0; x < width; ++x) errors[y * width + x] = errorAt(rowA, rowB, x);
     if (performance.now() - start < kSlice) continue;
     await new Promise((done) => setTimeout(done));
+    if (!isWanted()) return null;
     start = performance.now();
   }
   return errors;

@@ -25,6 +25,7 @@ function toCanvas(image: ImageData): HTMLCanvasElement {
 export class Pictures {
   private readonly ready = new Map<string, Promise<Picture | null>>();
   private pixelsReady = 0;
+  private wanted = new Set<string>();
   readonly store: PixelStore;
   constructor(private readonly report: Report) {
     this.store = new PixelStore(report);
@@ -43,24 +44,32 @@ export class Pictures {
       return { canvas: toCanvas(shade(pixels, image.type, this.display, exposure)), pixels };
     });
   }
+  /** What is asked for from now on is wanted, and nothing that was before: long work on that is given up. */
+  forgetWanted() {
+    this.wanted.clear();
+  }
   /** FLIP between two images of colors, as the display shows them without more exposure. Nothing where sizes differ. */
   flip(a: ImageSeries, b: ImageSeries, frame: number): Promise<Picture | null> {
     const [left, right] = [a.frames[frame], b.frames[frame]];
     const areColors = [a, b].every(({ type }) => type === "color" || type === "albedo");
     if (left === undefined || right === undefined || !areColors) return Promise.resolve(null);
-    return this.keep(`flip ${Math.min(left, right)} ${Math.max(left, right)}`, async () => {
-      const errors = await this.flipErrors(a, b, frame);
+    const key = `flip ${Math.min(left, right)} ${Math.max(left, right)}`;
+    this.wanted.add(key);
+    return this.keep(key, async () => {
+      const errors = await this.flipErrors(a, b, frame, () => this.wanted.has(key));
+      if (!errors) this.ready.delete(key); // it may have been given up, and be wanted later
       const { width, height } = this.report.packed[left]!;
       return errors && { canvas: toCanvas(shadeMap(errors, width, height)), pixels: null };
     });
   }
   /** NaN where one of the pixels is not finite. */
-  async flipErrors(a: ImageSeries, b: ImageSeries, frame: number): Promise<Float32Array | null> {
+  async flipErrors(a: ImageSeries, b: ImageSeries, frame: number, isWanted = () => true): Promise<Float32Array | null> {
     const [p, q] = await Promise.all([a, b].map((image) => this.store.get(image.frames[frame]!)));
     const { width, height } = p!;
     if (width !== q!.width || height !== q!.height) return null;
     const light = [displayLight(p!, a.type, this.display), displayLight(q!, b.type, this.display)] as const;
-    const errors = await flipMap(...light, width, height, this.report.pixelsPerDegree ?? usualPixelsPerDegree);
+    const errors = await flipMap(light, { width, height }, this.report.pixelsPerDegree ?? usualPixelsPerDegree, isWanted);
+    if (!errors) return null;
     for (const image of [p!, q!])
       for (let i = 0; i < image.data.length; ++i) if (!Number.isFinite(image.value(i))) errors[i % errors.length] = NaN;
     return errors;

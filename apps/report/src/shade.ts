@@ -174,12 +174,15 @@ export function shadeMap(errors: Float32Array, width: number, height: number): I
 export function displayLight(pixels: Pixels, type: string, display: string): Float32Array {
   const curve = displayCurve(type === "albedo" ? "srgb" : display, 0);
   const toLight = (v: number) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+  const light = new Float32Array(pixels.data.length);
   const ofValue = (value: number) => (Number.isFinite(value) ? toLight(curve(value)) : 0);
   if (pixels.about.format === "f16") {
     const table = Float32Array.from(halfValues, ofValue);
-    return Float32Array.from(pixels.data, (bits) => table[bits]!);
+    for (let i = 0; i < light.length; ++i) light[i] = table[pixels.data[i]!]!;
+  } else {
+    for (let i = 0; i < light.length; ++i) light[i] = ofValue(pixels.data[i]!);
   }
-  return Float32Array.from(pixels.data, ofValue);
+  return light;
 }
 
 /** |a - b| of each channel, brighter with the exposure; in one channel in Viridis' colors. Nothing where sizes differ. */

@@ -10,6 +10,8 @@ import { type Shown, Stage } from "./stage";
 import { isBetween, referenceOf, type State, type Store } from "./state";
 import { find } from "./text";
 
+const kPatience = 250; // ms, after which FLIP of large images is said to be on its way
+
 export class Viewer {
   private readonly stage: Stage;
   private readonly readout: Readout;
@@ -57,7 +59,9 @@ export class Viewer {
   private async load() {
     const turn = ++this.loading;
     const { state } = this.store;
+    const patience = setTimeout(() => this.tell("This takes a moment…"), kPatience);
     const shown = await this.read(state);
+    clearTimeout(patience);
     if (turn !== this.loading) return; // something else was asked for meanwhile
     this.stage.canvas.dataset["frame"] = String(state.frame);
     this.tellAbsent(shown);
@@ -66,13 +70,15 @@ export class Viewer {
     this.prefetch(shown);
   }
   private async read({ left, right, mode, frame, exposure }: State): Promise<Shown> {
+    this.pictures.forgetWanted();
     const { images } = this.store.report;
     const [a, b] = [images[left]!, images[right]!];
     if (mode === "difference") return { left: await this.pictures.difference(a, b, frame, exposure), right: null };
     if (mode === "flip") return { left: await this.pictures.flip(a, b, frame), right: null };
     const of = (image: ImageSeries) =>
       mode === "errors" ? this.pictures.flip(referenceOf(this.store.report)!, image, frame) : this.pictures.series(image, frame, exposure);
-    return { left: await of(a), right: mode === "left" ? null : await of(b) };
+    const [first, second] = await Promise.all([of(a), mode === "left" ? null : of(b)]);
+    return { left: first, right: second };
   }
 
   private tellAbsent(shown: Shown) {
@@ -84,6 +90,9 @@ export class Viewer {
     let text = names.length ? `frame ${frame} of ${names.join(" and ")} is not in this report` : "";
     if (mode === "errors" && names.length) text = `no errors of ${names.join(" and ")}`;
     if (isBetween(mode) && !text && !shown.left) text = mode === "flip" ? "FLIP is between colors of one size" : "these have other sizes or channels";
+    this.tell(text);
+  }
+  private tell(text: string) {
     find("absent").hidden = text === "";
     find("absent").textContent = text;
   }
