@@ -257,7 +257,7 @@ Preparation prepare(const Arguments& arguments, Watch* watch) {
   if (!is_to_video && arguments.frames_per_second)
     throw Error(Fault::usage, "--fps",
                 "it is for videos, and --out names a folder; name a video, such as out.mp4, or leave it out");
-  frames_per_second(arguments);
+  frames_per_second(arguments);  // what it cannot be is told before the run
   SessionOptions options = parse_schedule(arguments.schedule);
   options.dumps = arguments.dumps;
   OutputArguments files = arguments.output;
