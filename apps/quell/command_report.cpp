@@ -15,6 +15,7 @@
 #include "report_data.h"
 #include "report_page.h"
 #include "report_run.h"
+#include "report_size.h"
 #include "run_options.h"
 #include "run_reference.h"
 
@@ -96,29 +97,9 @@ ReportFrames choose_frames(const std::vector<ReportedGraph>& graphs, const Argum
     frames.kept.insert(frame);
     frames.inner = {frame};
   }
+  for (const std::int64_t frame : frames.inner)
+    if (std::ranges::binary_search(frames.all, frame - 1)) frames.before.insert(frame - 1);
   return frames;
-}
-
-/// Bytes of the file, by what half floats of noise take. Smooth images take less.
-double estimate_bytes(const Report& report) {
-  constexpr double kBytesPerByte = 0.95;  // deflated, and in Base64
-  double bytes = 0;
-  const auto add = [&](const Shape& shape, std::size_t frames, double bytes_per_value) {
-    const double pixels = static_cast<double>(shape.size.width) * shape.size.height;
-    bytes += pixels * info(shape.type).channels * bytes_per_value * static_cast<double>(frames) * kBytesPerByte;
-  };
-  for (const ReportedGraph& graph : report.graphs) {
-    const Plan& plan = graph.job.plan;
-    for (const PlannedResult& result : plan.results()) {
-      const Shape shape = plan.shape(result.from);
-      add(shape, report.frames.kept.size(), 2);
-      add({QUELL_TYPE_SCALAR, shape.size}, report.frames.kept.size(), report.measuring ? 0.5 : 0);
-    }
-    for (const std::string& name : graph.inner) add(plan.shape(plan.graph->find(name)), report.frames.inner.size(), 4);
-  }
-  const std::optional<Shape> noisy = report.graphs.front().job.sequence->shape("color");
-  if (noisy) add(*noisy, report.frames.kept.size() * (report.measuring ? 2 : 1), 2);
-  return bytes;
 }
 
 std::string megabytes(double bytes) { return fmt::format("{:.0f} MB", bytes / 1e6); }
@@ -130,10 +111,19 @@ void warn_of_size(double bytes, const char* verb) {
       verb, megabytes(bytes));
 }
 
+/// The last part of a path, whatever way it is written: of "shot/", and of "." in a folder of that name, "shot".
+std::string name_of_folder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::path whole = std::filesystem::absolute(path, error).lexically_normal();
+  if (!whole.has_filename()) whole = whole.parent_path();
+  return whole.filename().string();
+}
+
 Report prepare(const Arguments& arguments) {
   Report report;
   const std::vector<Operand> graphs = parse_graphs(arguments.graphs);
   const Registry passes = load_passes(arguments.plugins);
+  std::string described;
   for (const Operand& graph : graphs) {
     GraphArguments one;
     one.graph = graph.what;
@@ -142,10 +132,12 @@ Report prepare(const Arguments& arguments) {
     ReportedGraph& reported = report.graphs.emplace_back();
     reported.label = graph.label;
     const std::shared_ptr<const Graph> loaded = load(one, passes);
-    if (report.graphs.size() > 1) set_verbosity(Verbosity::quiet);  // the sequence was described already
-    reported.job = prepare_job(loaded, arguments.sequence);
-    set_verbosity(arguments.verbosity.verbosity());
+    for (const std::filesystem::path& file : loaded->files)
+      reported.files.emplace_back(file.string(), read_text(file, Fault::usage)->text);
+    reported.job = prepare_job(loaded, arguments.sequence, {}, {}, described);
+    described = reported.job.sequence->describe();
     reported.inner = list_inner_images(reported.job.plan);
+    reported.weighed = find_weighed(reported.job.plan);
   }
   report.frames = choose_frames(report.graphs, arguments);
   report.sequence = arguments.sequence.sequence.string();
@@ -153,7 +145,7 @@ Report prepare(const Arguments& arguments) {
   if (report.threads == 0) report.threads = available_threads();
   std::string labels;
   for (const Operand& graph : graphs) labels += (labels.empty() ? "" : ", ") + graph.label;
-  report.title = labels + " on " + std::filesystem::path(report.sequence).lexically_normal().filename().string();
+  report.title = labels + " on " + name_of_folder(report.sequence);
   return report;
 }
 
@@ -186,6 +178,7 @@ ExitCode run(const Arguments& arguments, Console& console) {
   Report report = prepare(arguments);
   const auto measuring = prepare_measuring_of(report, arguments);
   const double estimate = estimate_bytes(report);
+  spdlog::debug("the report will have about {}", megabytes(estimate));
   if (estimate > kLargeFile) warn_of_size(estimate, "will have");
   PackedImages packed;
   bool has_failed = false;
@@ -197,10 +190,14 @@ ExitCode run(const Arguments& arguments, Console& console) {
       session.threads = report.threads;
       run_for_report(graph, report.frames, measuring[i], session, packed);
       draw_for_report(graph);
+      tell_new_warnings(graph.job);
+      if (measuring[i]) tell_new_warnings(*measuring[i], graph.job);
+      if (interrupted()) throw Interrupted{};
       has_failed |= std::ranges::any_of(graph.frames, [](const FrameReport& frame) { return !frame.ok; });
       spdlog::info("{}: {} frames in {}", graph.label, graph.frames.size(), format_duration(graph.seconds));
     }
     report.inputs = read_inputs(report.graphs, report.frames, report.measuring, packed);
+    if (interrupted()) throw Interrupted{};
   } catch (const Interrupted&) {
     console.set_status("");
     spdlog::warn("interrupted; no report was written");

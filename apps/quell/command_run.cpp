@@ -41,7 +41,7 @@ struct Arguments {
   std::vector<std::string> dumps;
   std::optional<std::filesystem::path> log_json, trace;
   std::optional<std::string> tev;
-  std::string frames_per_second = "24";
+  std::optional<std::string> frames_per_second;
   bool dry_run = false, watch = false;
 };
 
@@ -212,7 +212,15 @@ void check_video(const Arguments& arguments) {
   if (!arguments.output.formats.empty()) refuse("--format");
   if (arguments.output.is_layered) refuse("--layers");
   if (arguments.output.keep_channels) refuse("--keep-channels");
+  if (arguments.output.type != OutputArguments().type) refuse("--type");
+  if (arguments.output.compression != OutputArguments().compression) refuse("--compression");
+  if (!arguments.output.padding.empty()) refuse("--padding");
   if (arguments.watch) refuse("--watch");
+  check_video_file(arguments.output.folder);
+}
+
+double frames_per_second(const Arguments& arguments) {
+  return parse_number(arguments.frames_per_second.value_or("24"), "--fps", 0.01, 1000);
 }
 
 /// One file, of every frame.
@@ -222,20 +230,34 @@ std::vector<ResultFiles> list_video(const Job& job, const std::filesystem::path&
 
 std::unique_ptr<VideoSink> open_video(const Arguments& arguments, const Job& job) {
   const PlannedResult result = find_video_output(job.plan);
-  return std::make_unique<VideoSink>(VideoOptions{arguments.output.folder, result.name, job.plan.shape(result.from).size,
-                                                  parse_number(arguments.frames_per_second, "--fps", 0.01, 1000)});
+  return std::make_unique<VideoSink>(
+      VideoOptions{arguments.output.folder, result.name, job.plan.shape(result.from).size, frames_per_second(arguments)});
+}
+
+/// While a graph is watched, a tev that was closed is no reason to end.
+void open_tev(Preparation& run, const std::string& address, const Watch* watch) {
+  try {
+    run.tev = std::make_unique<TevSink>(front_sink(run), address);
+  } catch (const Error& error) {
+    if (!watch || !watch->last) throw;
+    spdlog::warn("{}; this run goes on without", error.what());
+  }
 }
 
 /// Opens what stands in front of the files, before anything is computed.
-void open_sinks(Preparation& run, const Arguments& arguments) {
+void open_sinks(Preparation& run, const Arguments& arguments, const Watch* watch) {
   if (is_video(arguments.output.folder)) run.video = open_video(arguments, run.job);
-  if (arguments.tev) run.tev = std::make_unique<TevSink>(front_sink(run), *arguments.tev);
+  if (arguments.tev) open_tev(run, *arguments.tev, watch);
   if (run.to_measure) run.measuring = std::make_unique<MeasuringSink>(front_sink(run), std::move(*run.to_measure));
 }
 
 Preparation prepare(const Arguments& arguments, Watch* watch) {
   const bool is_to_video = is_video(arguments.output.folder);
   if (is_to_video) check_video(arguments);
+  if (!is_to_video && arguments.frames_per_second)
+    throw Error(Fault::usage, "--fps",
+                "it is for videos, and --out names a folder; name a video, such as out.mp4, or leave it out");
+  frames_per_second(arguments);  // what it cannot be is told before the run
   SessionOptions options = parse_schedule(arguments.schedule);
   options.dumps = arguments.dumps;
   OutputArguments files = arguments.output;
@@ -272,7 +294,7 @@ ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, W
   spdlog::debug("up to {} frames at a time ({}), and {} of images", window.frames, window.reason, format_bytes(window.memory));
   spdlog::debug("computing on {}", current_isa());
   prepare_folder(is_video(arguments.output.folder) ? folder_of(arguments.output.folder) : arguments.output.folder);
-  open_sinks(run, arguments);
+  open_sinks(run, arguments, watch);
   log.start(run.job, run.results, options, window);
   std::optional<TraceFile> trace;
   if (arguments.trace) trace.emplace(*arguments.trace);
@@ -328,7 +350,9 @@ void add_output_options(CLI::App& app, Arguments& arguments) {
   add_options(app, arguments.output);
   add_repeatable(app, "--dump", arguments.dumps, "NODE.PORT", "Write an inner image of the graph, too; repeatable.")
       ->group(kOutputGroup);
-  add_text(app, "--fps", arguments.frames_per_second, "N", "Frames per second of a video; 24 by default.")->group(kOutputGroup);
+  app.add_option("--fps", arguments.frames_per_second, "Frames per second of a video; 24 by default.")
+      ->type_name("N")
+      ->group(kOutputGroup);
   app.add_option("--tev", arguments.tev, "Show images in a running tev, the viewer, too, as they are finished.")
       ->type_name("HOST:PORT")
       ->group(kOutputGroup);

@@ -52,7 +52,12 @@ int run_dot(const Stream& in, const Stream& out, const Stream& err) {
   std::string program = "dot", format = "-Tsvg";
   std::array<char*, 3> words{program.data(), format.data(), nullptr};
   pid_t process = 0;
-  const int error = posix_spawnp(&process, program.c_str(), &actions, nullptr, words.data(), environ);
+  // A group of its own: Ctrl-C is for this program, which then ends as it says, and not with half a drawing.
+  posix_spawnattr_t attributes{};
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  const int error = posix_spawnp(&process, program.c_str(), &actions, &attributes, words.data(), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (error == ENOENT)
     throw Error(Fault::usage, "--svg",

@@ -136,13 +136,13 @@ void tell_new_warnings(Job& job) {
 }
 
 Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arguments, const std::vector<std::string>& dumps,
-                std::shared_ptr<Sequence> opened) {
+                std::shared_ptr<Sequence> opened, const std::string& described) {
   require_known_names(*graph, arguments);
   require_known_dumps(*graph, dumps);
   Job job;
   job.graph = graph;
   job.sequence = opened ? opened : open_sequence(*graph, arguments);
-  if (!opened) spdlog::info(job.sequence->describe());
+  if (const std::string about = job.sequence->describe(); !opened && about != described) spdlog::info(about);
   tell_new_warnings(job);  // at once: they may explain the error that follows
   const std::vector<InputFiles> found = job.sequence->inputs();
   const std::string place = arguments.sequence.empty() ? "--in" : arguments.sequence.string();

@@ -29,9 +29,10 @@ std::shared_ptr<const Graph> load(const GraphArguments& arguments, const Registr
 
 /// Opens the sequence for the graph, tells what was recognized, and plans. Throws Error(input) when an input, or a file of the
 /// frames asked for, is missing; Error(usage) when the graph cannot run on these images. `opened` is the sequence of an earlier
-/// job, for a graph of the same inputs: it was told already.
+/// job, for a graph of the same inputs: it was told already. `described` is what was told of a sequence before.
 Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arguments,
-                const std::vector<std::string>& dumps = {}, std::shared_ptr<Sequence> opened = {});
+                const std::vector<std::string>& dumps = {}, std::shared_ptr<Sequence> opened = {},
+                const std::string& described = {});
 
 /// Prints the sequence's warnings that are new since the last call.
 void tell_new_warnings(Job& job);

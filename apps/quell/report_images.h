@@ -8,11 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "image_series.h"
-#include "quell/metrics/display.h"
+#include "quell/image/stream.h"
 #include "report_pixels.h"
 
 namespace quell::app {
+
+using Names = std::set<std::string, std::less<>>;
+
+/// Names, as a sink is told them, of what weights of filters are made of: it is kept exactly, since they have to reproduce what
+/// the passes gave.
+struct Weighed {
+  Names now;     ///< of inner frames
+  Names before;  ///< of the frames before these
+};
 
 /// A series of images of one name.
 struct ReportImage {
@@ -28,28 +36,20 @@ struct ReportImage {
   int graph = -1;  ///< of results and inner images
   PortType type = QUELL_TYPE_COLOR;
   std::map<std::int64_t, int> frames;  ///< numbers of PackedImages
-  std::map<std::int64_t, int> flip;    ///< of maps of errors against the reference
 };
 
 struct ReportFrames {
   std::vector<std::int64_t> all;  ///< that are computed
   std::set<std::int64_t> kept;    ///< whose images are shown
   std::set<std::int64_t> inner;   ///< of these, whose inner images are shown, too
+  std::set<std::int64_t> before;  ///< that end right before one of `inner`: of what they left to it, images are kept, too
 };
 
-/// Keeps the images of outputs and dumps of one graph, and maps of errors of its color outputs. Thread-safe.
+/// Keeps the images of outputs and dumps of one graph. Thread-safe.
 class ReportSink final : public FrameSink {
  public:
-  struct Reference {
-    const ImageSeries* series = nullptr;  ///< null: no maps
-    DisplayTransform display = DisplayTransform::reinhard;
-    bool is_for_all = false;  ///< one image for every frame
-  };
   /// `results` are names of outputs. What is given must outlive the sink.
-  ReportSink(const ReportFrames& frames, std::set<std::string, std::less<>> results, Reference reference, PackedImages& packed);
-
-  /// Of the frames whose inner images are shown, these are kept exactly.
-  void keep_exactly(std::set<std::string, std::less<>> names) { exact_ = std::move(names); }
+  ReportSink(const ReportFrames& frames, Names results, Weighed weighed, PackedImages& packed);
 
   void write(std::string_view output, std::int64_t frame, const Item& item) override;
   bool uses_processor() const override { return true; }
@@ -60,13 +60,10 @@ class ReportSink final : public FrameSink {
   const std::map<std::string, ReportImage, std::less<>>& images() const { return images_; }
 
  private:
-  int make_map(std::int64_t frame, const Image& image);
   const ReportFrames& frames_;
-  const std::set<std::string, std::less<>> results_;
-  std::set<std::string, std::less<>> exact_;
-  const Reference reference_;
+  const Names results_;
+  const Weighed weighed_;
   PackedImages& packed_;
-  BufferPool pool_;
   std::mutex mutex_;
   std::map<std::string, ReportImage, std::less<>> images_;
 };

@@ -29,7 +29,7 @@ std::string to_base64(const std::vector<std::uint8_t>& bytes) {
 
 std::string deflate_to_text(const std::vector<std::uint8_t>& bytes) {
   // Byte planes of noise hardly get smaller with more effort than this.
-  constexpr int kEffort = 4;
+  constexpr int kEffort = 6;
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
   std::vector<std::uint8_t> packed(size);
   const int status = compress2(packed.data(), &size, bytes.data(), static_cast<uLong>(bytes.size()), kEffort);
@@ -98,18 +98,17 @@ PackedImage pack(const Image& image, Precision precision) {
   return pack_bits(image, 4, "f32", [&](int x, int y, int c) { return std::bit_cast<std::uint32_t>(values.at(x, y, c)); });
 }
 
-PackedImage pack_map(const Image& map) {
-  const FloatImage errors = map.floats();
-  return pack_bits(map, 1, "u8", [&](int x, int y, int c) {
-    return static_cast<std::uint32_t>(std::lround(255 * std::clamp(errors.at(x, y, c), 0.0F, 1.0F)));
-  });
-}
-
 int PackedImages::add(PackedImage image) {
+  const std::size_t hash = std::hash<std::string>()(image.text);
   const std::lock_guard lock(mutex_);
+  const auto [begin, end] = by_hash_.equal_range(hash);
+  for (auto known = begin; known != end; ++known)
+    if (images_[static_cast<std::size_t>(known->second)] == image) return known->second;
   bytes_ += image.text.size();
   images_.push_back(std::move(image));
-  return static_cast<int>(images_.size()) - 1;
+  const int number = static_cast<int>(images_.size()) - 1;
+  by_hash_.emplace(hash, number);
+  return number;
 }
 
 std::size_t PackedImages::bytes() const {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <mutex>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "quell/image/image.h"
@@ -18,8 +19,9 @@ std::uint16_t to_half(float value);
 struct PackedImage {
   Size size;
   int channels = 0;
-  std::string format;  ///< "f16"; "f32" where they do not do; "u32" for ids; "u8" for maps of 0..1 times 255
+  std::string format;  ///< "f16"; "f32" where they do not do; "u32" for ids
   std::string text;
+  bool operator==(const PackedImage&) const = default;
 };
 
 /// What is kept of floats.
@@ -28,12 +30,11 @@ enum class Precision {
   exact,  ///< floats, unless half floats hold the same values
 };
 PackedImage pack(const Image& image, Precision precision = Precision::shown);
-/// Of a map of errors within 0..1, with 8 bits.
-PackedImage pack_map(const Image& map);
 
 /// All images of a report, by number. Thread-safe.
 class PackedImages {
  public:
+  /// The number of an equal image where there is one: graphs have much in common.
   int add(PackedImage image);
   /// Bytes of text so far.
   std::size_t bytes() const;
@@ -43,6 +44,7 @@ class PackedImages {
  private:
   mutable std::mutex mutex_;
   std::vector<PackedImage> images_;
+  std::unordered_multimap<std::size_t, int> by_hash_;
   std::size_t bytes_ = 0;
 };
 

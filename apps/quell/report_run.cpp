@@ -12,39 +12,15 @@
 namespace quell::app {
 namespace {
 
-constexpr const char* kNoisy = "color";  // the input that graphs denoise
-
-std::set<std::string, std::less<>> names_of_results(const Plan& plan) {
-  std::set<std::string, std::less<>> names;
+Names names_of_results(const Plan& plan) {
+  Names names;
   for (const int output : plan.outputs) names.insert(plan.graph->outputs[static_cast<std::size_t>(output)].name);
   return names;
 }
 
-ReportSink::Reference reference_of(const std::optional<MeasuringOptions>& measuring) {
-  if (!measuring) return {};
-  return {&measuring->reference, measuring->compare.display, measuring->reference.is_single() && measuring->frames.size() == 1};
-}
-
-/// What nodes that look at a neighborhood read and yield, as the sink is told: the weights of filters are made of it, and have to
-/// reproduce it.
-std::set<std::string, std::less<>> find_filtered(const Plan& plan) {
-  std::set<std::string, std::less<>> names;
-  const std::vector<PlannedResult> results = plan.results();
-  const auto add = [&](const Endpoint& endpoint) {
-    const auto result = std::ranges::find(results, endpoint, &PlannedResult::from);
-    names.insert(result != results.end() ? result->name : plan.graph->describe(endpoint));
-  };
-  for (const PlannedNode& planned : plan.nodes) {
-    if (std::ranges::none_of(planned.radius, [](int radius) { return radius > 0 && radius != QUELL_RADIUS_UNBOUNDED; })) continue;
-    for (const std::vector<Edge>& edges : plan.graph->nodes[static_cast<std::size_t>(planned.node)].inputs)
-      for (const Edge& edge : edges)
-        if (edge.delay == 0 && !edge.from.is_nothing()) add(edge.from);
-    for (std::size_t port = 0; port < planned.outputs.size(); ++port)
-      for (std::size_t item = 0; item < planned.outputs[port].size(); ++item)
-        add({planned.node, static_cast<int>(port), static_cast<int>(item)});
-  }
-  return names;
-}
+/// Passes whose weights the page tells (apps/report/src/taps.ts).
+const Names kMeans{"atrous",    "bilateral", "gaussian", "history_fix",    "joint_bilateral", "mix",           "moments", "nlm",
+                   "reproject", "scale",     "taa",      "temporal_blend", "variance",        "variance_blur", "window"};
 
 /// Inputs that are read by some graph, each from the first graph that reads it.
 std::map<std::string, const ReportedGraph*> find_inputs(const std::vector<ReportedGraph>& graphs) {
@@ -52,6 +28,15 @@ std::map<std::string, const ReportedGraph*> find_inputs(const std::vector<Report
   for (const ReportedGraph& graph : graphs)
     for (const InputFiles& input : graph.job.inputs) inputs.emplace(input.input, &graph);
   return inputs;
+}
+
+Weighed weighed_by_any(const std::vector<ReportedGraph>& graphs) {
+  Weighed all;
+  for (const ReportedGraph& graph : graphs) {
+    all.now.insert(graph.weighed.now.begin(), graph.weighed.now.end());
+    all.before.insert(graph.weighed.before.begin(), graph.weighed.before.end());
+  }
+  return all;
 }
 
 /// As the graph reads it: without NaN and infinity. Nothing where it cannot be read: the run has told why.
@@ -65,34 +50,35 @@ Item read_input(const ReportedGraph& graph, const std::string& input, std::int64
 
 ReportImage read_reference(const ReportFrames& frames, const MeasuringOptions& measuring, BufferPool& pool,
                            PackedImages& packed) {
-  ReportImage reference{"reference", ReportImage::Kind::reference, -1, QUELL_TYPE_COLOR, {}, {}};
+  ReportImage reference{"reference", ReportImage::Kind::reference, -1, QUELL_TYPE_COLOR, {}};
   for (const std::int64_t frame : frames.kept) try {
+      if (interrupted()) throw Interrupted{};
       if (measuring.has_reference(frame)) reference.frames[frame] = packed.add(pack(measuring.reference.read(frame, pool)));
     } catch (const Error& error) { spdlog::warn("frame {}: the report has no reference: {}", frame, error.what()); }
   return reference;
 }
 
-void read_noisy(const ReportedGraph& graph, const ReportFrames& frames, const std::optional<MeasuringOptions>& measuring,
-                Executor& executor, PackedImages& packed, ReportedInputs& read) {
+void read_noisy(const ReportedGraph& graph, const ReportFrames& frames, const Weighed& weighed,
+                const std::optional<MeasuringOptions>& measuring, Executor& executor, PackedImages& packed,
+                ReportedInputs& read) {
   BufferPool pool;
-  ReportSink sink(frames, {kNoisy}, reference_of(measuring), packed);
-  sink.keep_exactly({kNoisy});
+  ReportSink sink(frames, {kNoisyInput}, weighed, packed);
   std::optional<MeasuringSink> measure;
   if (measuring) {
     MeasuringOptions options = *measuring;
-    options.outputs = {kNoisy};
+    options.outputs = {kNoisyInput};
     measure.emplace(sink, std::move(options));
   }
   FrameSink& to = measure ? static_cast<FrameSink&>(*measure) : sink;
   for (const std::int64_t frame : frames.all) {
     if (interrupted()) throw Interrupted{};
-    const Item item = read_input(graph, kNoisy, frame, executor, pool);
+    const Item item = read_input(graph, kNoisyInput, frame, executor, pool);
     if (!item) continue;
-    to.write(kNoisy, frame, item);
+    to.write(kNoisyInput, frame, item);
     if (measure) read.measured[frame] = measure->take(frame);
   }
   if (measure) read.totals = measure->totals();
-  const auto found = sink.images().find(kNoisy);
+  const auto found = sink.images().find(kNoisyInput);
   if (found == sink.images().end()) return;
   read.images.push_back(found->second);
   read.images.back().kind = ReportImage::Kind::noisy;
@@ -114,10 +100,30 @@ std::vector<std::string> list_inner_images(const Plan& plan) {
   return names;
 }
 
+Weighed find_weighed(const Plan& plan) {
+  Weighed found;
+  const std::vector<PlannedResult> results = plan.results();
+  const auto add = [&](Names& names, const Endpoint& endpoint) {
+    const auto result = std::ranges::find(results, endpoint, &PlannedResult::from);
+    names.insert(result != results.end() ? result->name : plan.graph->describe(endpoint));
+  };
+  for (const PlannedNode& planned : plan.nodes) {
+    const Node& node = plan.graph->nodes[static_cast<std::size_t>(planned.node)];
+    if (!kMeans.contains(node.pass->id)) continue;
+    for (const std::vector<Edge>& edges : node.inputs)
+      for (const Edge& edge : edges)
+        if (!edge.from.is_nothing() && edge.delay >= 0 && edge.delay <= 1)
+          add(edge.delay == 0 ? found.now : found.before, edge.from);
+    for (std::size_t port = 0; port < planned.outputs.size(); ++port)
+      for (std::size_t item = 0; item < planned.outputs[port].size(); ++item)
+        add(found.now, {planned.node, static_cast<int>(port), static_cast<int>(item)});
+  }
+  return found;
+}
+
 void run_for_report(ReportedGraph& graph, const ReportFrames& frames, const std::optional<MeasuringOptions>& measuring,
                     const SessionOptions& session, PackedImages& packed) {
-  ReportSink sink(frames, names_of_results(graph.job.plan), reference_of(measuring), packed);
-  sink.keep_exactly(find_filtered(graph.job.plan));
+  ReportSink sink(frames, names_of_results(graph.job.plan), graph.weighed, packed);
   std::optional<MeasuringSink> measure;
   if (measuring) measure.emplace(sink, *measuring);
   SessionOptions options = session;
@@ -157,13 +163,17 @@ ReportedInputs read_inputs(const std::vector<ReportedGraph>& graphs, const Repor
   BufferPool pool;
   Executor executor;
   const std::map<std::string, const ReportedGraph*> inputs = find_inputs(graphs);
-  if (const auto noisy = inputs.find(kNoisy); noisy != inputs.end())
-    read_noisy(*noisy->second, frames, measuring, executor, packed, read);
+  const Weighed weighed = weighed_by_any(graphs);
+  if (const auto noisy = inputs.find(kNoisyInput); noisy != inputs.end())
+    read_noisy(*noisy->second, frames, weighed, measuring, executor, packed, read);
   if (measuring) read.images.push_back(read_reference(frames, *measuring, pool, packed));
   for (const auto& [name, graph] : inputs) {
-    ReportImage image{name, ReportImage::Kind::input, -1, QUELL_TYPE_COLOR, {}, {}};
-    if (name == kNoisy) continue;
-    for (const std::int64_t frame : frames.inner) {
+    ReportImage image{name, ReportImage::Kind::input, -1, QUELL_TYPE_COLOR, {}};
+    if (name == kNoisyInput) continue;
+    std::set<std::int64_t> wanted = frames.inner;
+    if (weighed.before.contains(name)) wanted.insert(frames.before.begin(), frames.before.end());
+    for (const std::int64_t frame : wanted) {
+      if (interrupted()) throw Interrupted{};
       const Item item = read_input(*graph, name, frame, executor, pool);
       if (!item.image()) continue;
       image.type = item.image()->type();

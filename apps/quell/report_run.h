@@ -13,10 +13,14 @@
 
 namespace quell::app {
 
+inline constexpr const char* kNoisyInput = "color";  ///< that graphs denoise
+
 struct ReportedGraph {
   std::string label;
   Job job;
-  std::vector<std::string> inner;  ///< names of all inner images
+  std::vector<std::pair<std::string, std::string>> files;  ///< names and texts of what the graph was read from
+  std::vector<std::string> inner;                          ///< names of all inner images
+  Weighed weighed;
   std::map<std::string, ReportImage, std::less<>> images;
   std::vector<FrameReport> frames;
   std::map<std::int64_t, std::vector<MeasuredOutput>> measured;
@@ -27,6 +31,9 @@ struct ReportedGraph {
 
 /// Names for Graph::find of all images that nodes yield and that are no results already.
 std::vector<std::string> list_inner_images(const Plan& plan);
+
+/// What the weights of the graph's filters are made of.
+Weighed find_weighed(const Plan& plan);
 
 /// Thrown when a signal came.
 struct Interrupted {};

@@ -64,13 +64,38 @@ std::vector<std::string> channel_names(const Image& image) {
   return image.channels() == 2 ? std::vector<std::string>{"X", "Y"} : std::vector<std::string>{"X", "Y", "Z"};
 }
 
+struct Address {
+  std::string host, port;
+  std::string text() const { return (host.find(':') == std::string::npos ? host : "[" + host + "]") + ":" + port; }
+};
+
+/// HOST, HOST:PORT, [IPV6]:PORT, [IPV6], or IPV6, whose colons part no port.
+Address parse_address(const std::string& text) {
+  const std::size_t bracket = text.starts_with('[') ? text.find(']') : std::string::npos;
+  const std::size_t from = bracket == std::string::npos ? 0 : bracket;
+  const std::size_t colon = text.find(':', from);
+  const bool has_port = colon != std::string::npos && text.find(':', colon + 1) == std::string::npos;
+  Address address{has_port ? text.substr(0, colon) : text, has_port ? text.substr(colon + 1) : kPort};
+  if (bracket != std::string::npos && address.host.ends_with(']')) address.host = address.host.substr(1, bracket - 1);
+  if (address.host.empty() || address.host.find_first_of("[]") != std::string::npos || address.port.empty())
+    throw Error(Fault::usage, "--tev",
+                "'" + text + "' is no address; write HOST:PORT, such as localhost:14158, or [::1]:14158 for one of IPv6");
+  return address;
+}
+
+/// Why a connection, or sending, failed.
+std::string describe(int error) {
+  const bool is_late = error == EINPROGRESS || error == EAGAIN || error == EWOULDBLOCK;  // what SO_SNDTIMEO makes of waiting
+  return is_late ? "no answer within " + std::to_string(kPatience.tv_sec) + " s" : std::strerror(error);
+}
+
 /// -1 when nobody answers; errno tells why, or is 0 when the host is not known.
-int open_connection(const std::string& host, const std::string& port) {
+int open_connection(const Address& to) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
   errno = 0;
-  if (getaddrinfo(host.c_str(), port.c_str(), &hints, &found) != 0) return -1;
+  if (getaddrinfo(to.host.c_str(), to.port.c_str(), &hints, &found) != 0) return -1;
   int connection = -1;
   for (const addrinfo* address = found; address && connection < 0; address = address->ai_next) {
     connection = socket(address->ai_family, address->ai_socktype | SOCK_CLOEXEC, address->ai_protocol);
@@ -132,16 +157,13 @@ struct TevSink::State {
 };
 
 TevSink::TevSink(FrameSink& sink, const std::string& address) : sink_(sink), state_(std::make_unique<State>()) {
-  const std::size_t colon = address.rfind(':');
-  const std::string host = address.substr(0, colon), port = colon == std::string::npos ? kPort : address.substr(colon + 1);
-  if (host.empty() || port.empty())
-    throw Error(Fault::usage, "--tev", "'" + address + "' is no address; write HOST:PORT, such as localhost:14158");
+  const Address parts = parse_address(address);
   state_->address = address;
-  state_->connection = open_connection(host, port);
+  state_->connection = open_connection(parts);
   if (state_->connection < 0)
     throw Error(Fault::usage, "--tev",
-                "no tev answers at " + host + ":" + port + (errno == 0 ? ": the host or port is not known" : ": ") +
-                    (errno == 0 ? "" : std::strerror(errno)) + "; start it first (tev listens at port " + kPort + ")");
+                "no tev answers at " + parts.text() + ": " + (errno == 0 ? "the host or port is not known" : describe(errno)) +
+                    "; start it first (tev listens at port " + kPort + ")");
 }
 
 TevSink::~TevSink() = default;
@@ -157,7 +179,7 @@ void TevSink::write(std::string_view output, std::int64_t frame, const Item& ite
   const std::string number = std::to_string(frame);
   const std::string name = std::string(output) + "." + std::string(number.size() < 4 ? 4 - number.size() : 0, '0') + number;
   if (state_->send_image(name, *image)) return;
-  spdlog::warn("--tev: {} takes no more images: {}", state_->address, std::strerror(errno));
+  spdlog::warn("--tev: {} takes no more images: {}", state_->address, describe(errno));
   close(std::exchange(state_->connection, -1));
 }
 

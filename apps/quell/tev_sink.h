@@ -13,7 +13,8 @@ namespace quell::app {
 /// own, named `output.frame`. A tev that goes away meanwhile is told once, and does not end the run. Thread-safe.
 class TevSink final : public FrameSink {
  public:
-  /// Connects. The other sink must outlive this one. `address` is HOST:PORT, or HOST, with tev's own port 14158. Throws
+  /// Connects. The other sink must outlive this one. `address` is HOST:PORT, or HOST, with tev's own port 14158; HOST may be
+  /// [IPV6]. Throws
   /// Error(usage) naming --tev when nobody answers.
   TevSink(FrameSink& sink, const std::string& address);
   ~TevSink() override;

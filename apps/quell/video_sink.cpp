@@ -39,7 +39,10 @@ constexpr std::array<Format, 4> kFormats{
     {{".mp4", "mp4", "libx264"}, {".mov", "mov", "libx264"}, {".mkv", "matroska", "libx264"}, {".webm", "webm", "libvpx-vp9"}}};
 
 const Format* find_format(const fs::path& file) {
-  const auto found = std::ranges::find(kFormats, file.extension().string(), &Format::extension);
+  std::string extension = file.extension().string();
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const auto found = std::ranges::find(kFormats, extension, &Format::extension);
   return found == kFormats.end() ? nullptr : &*found;
 }
 
@@ -110,12 +113,21 @@ std::vector<std::string> ffmpeg_words(const VideoOptions& options, const fs::pat
           "0",
           "-f",
           std::string(format.name),
-          to.string()};
+          "file:" + to.string()};  // or what stands before a colon would be a protocol
 }
 
 }  // namespace
 
 bool is_video(const fs::path& file) { return find_format(file) != nullptr; }
+
+void check_video_file(const fs::path& file) {
+  std::error_code error;
+  if (fs::exists(file, error) && !fs::is_regular_file(file, error))
+    throw Error(Fault::usage, "--out",
+                file.string() + " is to be a video, but " +
+                    (fs::is_directory(file, error) ? "a folder" : "something that is no file") +
+                    " has this name; choose another one");
+}
 
 PlannedResult find_video_output(const Plan& plan) {
   std::vector<PlannedResult> colors;
@@ -140,6 +152,7 @@ struct VideoSink::State {
   std::mutex mutex;
   std::map<std::int64_t, Picture> waiting;
   Picture last;
+  int before_first = 0;  // frames that failed before there was a picture
   bool is_empty = true, is_broken = false;
 
   explicit State(VideoOptions given) : options(std::move(given)), file(options.file) {}
@@ -227,7 +240,8 @@ void VideoSink::end_frame(std::int64_t frame, bool ok) {
     if (ok && found != state_->waiting.end()) state_->last = std::move(found->second);
     if (found != state_->waiting.end()) state_->waiting.erase(found);
   }
-  if (!state_->last.empty()) state_->send(state_->last);
+  if (state_->last.empty()) return void(++state_->before_first);
+  for (int i = std::exchange(state_->before_first, 0); i >= 0; --i) state_->send(state_->last);
 }
 
 void VideoSink::finish() {

@@ -12,8 +12,10 @@
 
 namespace quell::app {
 
-/// Whether a name ends as a video's: .mp4, .mov, .mkv or .webm.
+/// Whether a name ends as a video's: .mp4, .mov, .mkv or .webm, in small or capital letters.
 bool is_video(const std::filesystem::path& file);
+/// Throws Error(usage) naming --out when a folder, or whatever is no file, stands there.
+void check_video_file(const std::filesystem::path& file);
 
 struct VideoOptions {
   std::filesystem::path file;
@@ -36,7 +38,8 @@ class VideoSink final : public FrameSink {
   void write(std::string_view output, std::int64_t frame, const Item& item) override;
   bool uses_processor() const override { return true; }
 
-  /// In the order of frames, for each of them. A frame that failed shows the one before it, so that the others keep their time.
+  /// In the order of frames, for each of them. A frame that failed shows the one before it, or, where there is none, the first
+  /// that did not, so that the others keep their time.
   void end_frame(std::int64_t frame, bool ok);
   /// After the last. Throws Error(frame), with the words of ffmpeg, when it fails; nothing is left behind then, nor where there
   /// was no frame.

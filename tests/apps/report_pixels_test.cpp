@@ -104,17 +104,28 @@ TEST(Pack, ExactlyKeepsFloatsThatNoHalfEquals) {
   }
 }
 
-TEST(Pack, IdsAndMaps) {
+TEST(Pack, Ids) {
   BufferPool pool;
   Image ids(QUELL_TYPE_ID, {1, 1}, pool);
   ids.writable_ids().at(0, 0, 0) = 0x01020304;
   EXPECT_EQ(pack(ids).format, "u32");
   EXPECT_THAT(unpack(pack(ids), 4), ElementsAre(4, 3, 2, 1));
-  Image map(QUELL_TYPE_SCALAR, {3, 1}, pool);
-  const FloatOutput errors = map.writable_floats();
-  errors.at(0, 0, 0) = 0, errors.at(1, 0, 0) = 0.5F, errors.at(2, 0, 0) = 1;
-  EXPECT_EQ(pack_map(map).format, "u8");
-  EXPECT_THAT(unpack(pack_map(map), 3), ElementsAre(0, 128, 255));
+}
+
+TEST(Pack, EqualImagesAreKeptOnce) {
+  BufferPool pool;
+  PackedImages images;
+  const auto add = [&](Size size, std::uint32_t id) {
+    Image ids(QUELL_TYPE_ID, size, pool);
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) ids.writable_ids().at(x, y, 0) = id;
+    return images.add(pack(ids));
+  };
+  EXPECT_EQ(add({2, 1}, 7), 0);
+  EXPECT_EQ(add({2, 1}, 8), 1);
+  EXPECT_EQ(add({1, 2}, 7), 2);  // the same bytes in another shape
+  EXPECT_EQ(add({2, 1}, 7), 0);
+  EXPECT_EQ(images.all().size(), 3U);
 }
 
 TEST(ReportPage, NoStringEndsTheScriptThatHoldsIt) {

@@ -67,6 +67,59 @@ TEST_F(Report, HoldsResultsInputsFiguresAndTheGraph) {
   EXPECT_EQ(report.find("provenance")->find("command")->elements.at(1).string, "report");
 }
 
+TEST_F(Report, IsNamedAfterItsFolderHoweverThatIsWritten) {
+  for (const std::string& shot : {text("shot"), text("shot") + "/", text("shot") + "/."}) {
+    ASSERT_EQ(run({"report", shot, graph_, "-o", text("report.html"), "--inner", "none"}).code, 0);
+    EXPECT_EQ(data().find("title")->string, "graph on shot") << shot;
+  }
+}
+
+TEST_F(Report, DescribesASequenceOnce) {
+  write_file("same.json", read_file(graph_));
+  const Outcome outcome = report({graph_, text("same.json")});
+  const std::size_t first = outcome.err.find("color.####.exr");
+  ASSERT_NE(first, std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("color.####.exr", first + 1), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("same: 4 frames in "), std::string::npos) << outcome.err;
+}
+
+/// A `dot` that does something else beside its drawing, which comes after the run: in the middle of a report.
+class ReportMeanwhile : public Report {
+ protected:
+  Outcome report_with_dot(const std::string& deed) {
+    write_file("bin/dot", "#!/bin/sh\n" + deed + "\ncat > /dev/null\necho '<svg></svg>'\n");
+    std::filesystem::permissions(path("bin/dot"), std::filesystem::perms::owner_all);
+    return Program({"report", text("shot"), graph_, "-o", text("report.html"), "--plugin-path", TEST_PLUGINS}, false,
+                   {"PATH=" + text("bin") + ":/usr/bin:/bin"})
+        .finish();
+  }
+};
+
+TEST_F(ReportMeanwhile, TheGraphMayBeChangedOrDeleted) {
+  const std::string before = read_file(graph_);
+  for (const std::string& deed : {"echo changed > " + graph_, "rm " + graph_}) {
+    write_file("graph.json", before);
+    const Outcome outcome = report_with_dot(deed);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(data().find("graphs")->elements.at(0).find("files")->elements.at(0).find("text")->string, before) << deed;
+  }
+}
+
+TEST_F(ReportMeanwhile, ALateInterruptIsHeard) {
+  const Outcome outcome = report_with_dot("kill -INT $PPID; sleep 0.2");
+  EXPECT_EQ(outcome.code, 75) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("interrupted; no report was written"));
+  EXPECT_FALSE(std::filesystem::exists(path("report.html")));
+}
+
+TEST_F(ReportMeanwhile, TheDrawingIsMadeInAGroupOfItsOwn) {
+  const Outcome outcome = report_with_dot("read -r line < /proc/$$/stat; echo $line | cut -d' ' -f1,5 > " + text("group"));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string group = read_file(path("group"));
+  const std::size_t space = group.find(' ');
+  EXPECT_EQ(group.substr(0, space) + "\n", group.substr(space + 1));
+}
+
 TEST_F(Report, KeepsEveryNthFrameAndComputesAll) {
   ASSERT_EQ(report({"--every", "3"}).code, 0);
   const Json report = data();

@@ -5,8 +5,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <thread>
 
 #include "tests/apps/sample.h"
@@ -155,11 +157,24 @@ TEST_F(Tev, IsSentEveryImageInFloats) {
 
 TEST_F(Tev, ThatGoesAwayDoesNotEndTheRun) {
   make_shot(4);
+  std::string nodes, from = "color";  // 1024 x 512 pixels: more than sockets take for a tev that does not read
+  for (int i = 0; i < 6; ++i) {
+    const std::string name = "double" + std::to_string(i);
+    nodes += (i > 0 ? ", \"" : "\"") + name + R"(": {"pass": "scale", "in": {"image": ")" + from +
+             R"("}, "params": {"to": "double"}})";
+    from = name + ".image";
+  }
+  write_file("large.json",
+             R"({"quell": 1, "inputs": {"color": "color"}, "nodes": {)" + nodes + R"(}, "outputs": {"color": ")" + from + "\"}}");
   Server server;
   server.take(100);
-  const Outcome outcome = run({"run", make_graph(), text("shot"), "-o", text("out"), "--tev", server.address()});
+  const Outcome outcome = run({"run", text("large.json"), text("shot"), "-o", text("out"), "--tev", server.address()});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   server.finish();
+  const std::string warning = "--tev: " + server.address() + " takes no more images: ";
+  const std::size_t first = outcome.err.find(warning);
+  ASSERT_NE(first, std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find(warning, first + 1), std::string::npos) << "told more than once";
   EXPECT_EQ(list("out").size(), 4U);
 }
 
@@ -168,7 +183,41 @@ TEST_F(Tev, ThatDoesNotAnswerIsAnErrorBeforeTheRun) {
   const Outcome outcome = run({"run", make_graph(), text("shot"), "-o", text("out"), "--tev", "127.0.0.1:1"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("--tev: no tev answers at 127.0.0.1:1: Connection refused; start it first"));
-  EXPECT_EQ(run({"run", make_graph(), text("shot"), "-o", text("out"), "--tev", ":1"}).code, 2);
+  const auto told = [&](const std::string& address) {
+    const Outcome refused = run({"run", make_graph(), text("shot"), "-o", text("out"), "--tev", address});
+    EXPECT_EQ(refused.code, 2) << address;
+    return refused.err;
+  };
+  for (const std::string bad : {":1", "[::1", "[]:1", "host:"}) EXPECT_THAT(told(bad), HasSubstr("'" + bad + "' is no address"));
+  EXPECT_THAT(told("[::1]:1"), HasSubstr("no tev answers at [::1]:1: "));
+  EXPECT_THAT(told("::1"), HasSubstr("no tev answers at [::1]:14158: "));
+  EXPECT_THAT(told("[::1]"), HasSubstr("no tev answers at [::1]:14158: "));
+  EXPECT_THAT(told("127.0.0.1"), HasSubstr("no tev answers at 127.0.0.1:14158: "));
+}
+
+TEST_F(Tev, ThatGoesAwayBetweenRunsDoesNotEndWatching) {
+  make_shot(1);
+  auto server = std::make_unique<Server>();
+  server->take(100);
+  const std::string address = server->address();
+  Program program({"run", make_graph(), text("shot"), "-o", text("out"), "--watch", "--tev", address, "--log-json",
+                   text("run.jsonl"), "--plugin-path", TEST_PLUGINS});
+  ASSERT_TRUE(program.wait_for_error_text("waiting for "));
+  server.reset();
+  make_graph(R"({"gain": 2})");
+  ASSERT_TRUE(program.wait_for_error_text(
+      "no tev answers at " + address +
+      ": Connection refused; start it first (tev listens at port 14158); this run goes on without\n"));
+  const auto runs = [&] {
+    int count = 0;
+    const std::string log = read_file(path("run.jsonl")), end = R"("outcome":"done")";
+    for (std::size_t at = log.find(end); at != std::string::npos; at = log.find(end, at + 1)) ++count;
+    return count;
+  };
+  for (int tries = 0; tries < 6000 && runs() < 2; ++tries) usleep(10'000);
+  EXPECT_EQ(runs(), 2);
+  program.send(SIGINT);
+  EXPECT_EQ(program.finish().code, 0);
 }
 
 }  // namespace

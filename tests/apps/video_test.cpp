@@ -1,6 +1,7 @@
 // quell run -o out.mp4
 #include <gmock/gmock.h>
 
+#include <csignal>
 #include <cstdlib>
 
 #include "tests/apps/sample.h"
@@ -61,6 +62,39 @@ TEST_F(Video, AFailedFrameShowsTheOneBefore) {
   EXPECT_THAT(greens("out.mp4", 16, 8), ElementsAre(IsNear(89), IsNear(124), IsNear(124), IsNear(170)));
 }
 
+TEST_F(Video, FramesThatFailBeforeTheFirstGoodOneShowThat) {
+  if (!has_ffmpeg()) GTEST_SKIP() << "there is no ffmpeg";
+  EXPECT_EQ(video("out.mp4", R"({"gain": 0.1, "at": [1, 2]})").code, 1);
+  EXPECT_THAT(greens("out.mp4", 16, 8), ElementsAre(IsNear(149), IsNear(149), IsNear(149), IsNear(170)));
+}
+
+TEST_F(Video, NamesWithColonsAndCapitalsAreFiles) {
+  if (!has_ffmpeg()) GTEST_SKIP() << "there is no ffmpeg";
+  const std::string graph = make_graph(R"({"gain": 0.1})"), program = QUELL_PROGRAM;
+  const std::string command = "cd '" + text(".") + "' && '" + program + "' run '" + graph +
+                              "' shot -o http:out.MP4 -q --plugin-path '" + TEST_PLUGINS + "'";
+  ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT: a test's own command
+  EXPECT_EQ(greens("http:out.MP4", 16, 8).size(), 4U);
+}
+
+TEST_F(Video, HoldsTheFramesThatWereDoneWhenItIsInterrupted) {
+  if (!has_ffmpeg()) GTEST_SKIP() << "there is no ffmpeg";
+  const std::string graph = make_graph(R"({"gain": 0.1, "wait_from": 3})");
+  Program program({"run", graph, text("shot"), "-o", text("out.mp4"), "--threads", "4", "--plugin-path", TEST_PLUGINS});
+  ASSERT_TRUE(program.wait_for_error_text("\nframe 2 (2 of 4)"));
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.code, 75) << outcome.err;
+  EXPECT_THAT(greens("out.mp4", 16, 8), ElementsAre(IsNear(89), IsNear(124)));
+}
+
+TEST_F(Video, IsRefusedBeforeTheRunWhereAFolderStands) {
+  std::filesystem::create_directories(path("out.mp4"));
+  const Outcome outcome = video("out.mp4", R"({"at": [1]})");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--out: " + text("out.mp4") + " is to be a video, but a folder has this name"));
+}
+
 TEST_F(Video, NeedsFfmpegAndSaysSo) {
   const Outcome outcome = Program({"run", make_graph(), text("shot"), "-o", text("out.mp4"), "--plugin-path", TEST_PLUGINS},
                                   false, {"PATH=" + text("nowhere")})
@@ -82,9 +116,20 @@ TEST_F(Video, WhatFfmpegSaysIsPassedOn) {
 }
 
 TEST_F(Video, WhatIsForImagesIsRefused) {
-  const Outcome outcome = video("out.mp4", "{}", {"--format", "png"});
+  const std::vector<std::vector<std::string>> options{
+      {"--format", "png"}, {"--type", "half"}, {"--compression", "none"}, {"--padding", "3"}, {"--layers", "all"}};
+  for (const std::vector<std::string>& option : options) {
+    const Outcome outcome = video("out.mp4", "{}", option);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(option.front() + ": it is for images, and --out names a video"));
+  }
+}
+
+TEST_F(Video, WhatIsForVideosIsRefusedWithoutOne) {
+  const Outcome outcome = video("folder", "{}", {"--fps", "10"});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("--format: it is for images, and --out names a video"));
+  EXPECT_THAT(outcome.err, HasSubstr("--fps: it is for videos, and --out names a folder"));
+  EXPECT_THAT(video("out.mp4", "{}", {"--fps", "no"}).err, HasSubstr("--fps"));
 }
 
 }  // namespace

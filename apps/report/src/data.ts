@@ -8,14 +8,13 @@ export interface ImageSeries {
   type: string; // of the port: "color", "normal", ...
   graph?: number;
   frames: Record<string, number>; // numbers of packed images, by frame
-  flip?: Record<string, number>;
 }
 
 export interface Packed {
   width: number;
   height: number;
   channels: number;
-  format: "f16" | "f32" | "u32" | "u8";
+  format: "f16" | "f32" | "u32";
 }
 
 export interface Metric {
@@ -26,7 +25,7 @@ export interface Metric {
 }
 
 export interface Figures {
-  all: (number | null)[];
+  all: (number | null)[]; // null: not known; in JSON "inf" is infinite
   frames: ((number | null)[] | null)[];
 }
 
@@ -44,7 +43,8 @@ export interface GraphNode {
   summary: string;
   doc: string;
   params: Record<string, string>;
-  inputs: { port: string; from: string; delay?: number }[];
+  inputs: { port: string; from: string; delay?: number; initial?: number[] | string }[]; // initial: a constant or a source; else nothing
+  resets?: boolean; // the graph may end what earlier frames left it
   outputs: NodeOutput[];
   seconds: number[]; // of each frame that ended well
 }
@@ -87,6 +87,7 @@ export interface Report {
   inner: number[];
   metrics?: Metric[];
   display?: string;
+  pixelsPerDegree?: number;
   reference?: string;
   noisy: Record<string, Figures>;
   graphs: Graph[];
@@ -98,7 +99,10 @@ export interface Report {
 export function readReport(): Report {
   const element = document.getElementById("report");
   if (!element) throw new Error("This page holds no report; quell report writes one.");
-  return JSON.parse(element.textContent ?? "") as Report;
+  const report = JSON.parse(element.textContent ?? "") as Report;
+  for (const { all, frames } of [report.noisy, ...report.graphs.map((graph) => graph.figures)].flatMap((figures) => Object.values(figures)))
+    for (const values of [all, ...frames]) values?.forEach((value, i) => ((value as unknown) === "inf" ? (values[i] = Infinity) : 0));
+  return report;
 }
 
 /** What to call an image where those of all graphs stand together. */

@@ -2,12 +2,14 @@ import "./style.css";
 import { readReport, type Report } from "./data";
 import { showDrawings } from "./drawing";
 import { Pictures } from "./pictures";
+import { Pixels } from "./pixels";
 import { showPlots, showTimes } from "./plots";
 import { showProvenance } from "./provenance";
+import { shadeDifference } from "./shade";
 import { firstState, Store } from "./state";
 import { Story } from "./story";
 import { showFigures } from "./table";
-import { filterNames } from "./taps";
+import { passNames } from "./taps";
 import { find } from "./text";
 import { Viewer } from "./viewer";
 
@@ -38,7 +40,14 @@ function showImages(report: Report) {
     },
     reportDrawn: () => viewer.drawn(),
     reportWeights: story.weightsOf.bind(story),
-    reportFilters: filterNames,
+    reportPasses: passNames,
+    reportDifference: (a: number[], b: number[]) => {
+      const gray = (values: number[]) =>
+        new Pixels({ width: values.length, height: 1, channels: 3, format: "f32" }, Float32Array.from([...values, ...values, ...values]));
+      const { data } = shadeDifference(gray(a), gray(b), 0)!;
+      return a.map((_, i) => [...data.slice(4 * i, 4 * i + 3)]);
+    },
+    reportFlip: async (left: number, right: number, frame: number) => [...((await pictures.flipErrors(report.images[left]!, report.images[right]!, frame)) ?? [])],
   });
 }
 

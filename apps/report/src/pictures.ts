@@ -1,7 +1,8 @@
 // Pictures that are ready to be drawn: shaded images and maps, kept while nothing they depend on changes.
 import type { ImageSeries, Report } from "./data";
+import { flipMap, usualPixelsPerDegree } from "./flip";
 import { type Pixels, PixelStore } from "./pixels";
-import { shade, shadeDifference, shadeMap } from "./shade";
+import { displayLight, shade, shadeDifference, shadeMap } from "./shade";
 
 export interface Picture {
   canvas: HTMLCanvasElement;
@@ -24,11 +25,15 @@ function toCanvas(image: ImageData): HTMLCanvasElement {
 export class Pictures {
   private readonly ready = new Map<string, Promise<Picture | null>>();
   private pixelsReady = 0;
+  private wanted = new Set<string>();
   readonly store: PixelStore;
   constructor(private readonly report: Report) {
     this.store = new PixelStore(report);
   }
 
+  private get display() {
+    return this.report.display ?? "reinhard";
+  }
   /** Nothing where the frame has no image. */
   series(image: ImageSeries, frame: number, exposure: number): Promise<Picture | null> {
     const number = image.frames[frame];
@@ -36,13 +41,38 @@ export class Pictures {
     const key = `series ${number} ${image.type === "color" ? exposure : 0}`;
     return this.keep(key, async () => {
       const pixels = await this.store.get(number);
-      return { canvas: toCanvas(shade(pixels, image.type, this.report.display ?? "reinhard", exposure)), pixels };
+      return { canvas: toCanvas(shade(pixels, image.type, this.display, exposure)), pixels };
     });
   }
-  flip(image: ImageSeries, frame: number): Promise<Picture | null> {
-    const number = image.flip?.[frame];
-    if (number === undefined) return Promise.resolve(null);
-    return this.keep(`flip ${number}`, async () => ({ canvas: toCanvas(shadeMap(await this.store.get(number))), pixels: null }));
+  /** What is asked for from now on is wanted, and nothing that was before: long work on that is given up. */
+  forgetWanted() {
+    this.wanted.clear();
+  }
+  /** FLIP between two images of colors, as the display shows them without more exposure. Nothing where sizes differ. */
+  flip(a: ImageSeries, b: ImageSeries, frame: number): Promise<Picture | null> {
+    const [left, right] = [a.frames[frame], b.frames[frame]];
+    const areColors = [a, b].every(({ type }) => type === "color" || type === "albedo");
+    if (left === undefined || right === undefined || !areColors) return Promise.resolve(null);
+    const key = `flip ${Math.min(left, right)} ${Math.max(left, right)}`;
+    this.wanted.add(key);
+    return this.keep(key, async () => {
+      const errors = await this.flipErrors(a, b, frame, () => this.wanted.has(key));
+      if (!errors) this.ready.delete(key); // it may have been given up, and be wanted later
+      const { width, height } = this.report.packed[left]!;
+      return errors && { canvas: toCanvas(shadeMap(errors, width, height)), pixels: null };
+    });
+  }
+  /** NaN where one of the pixels is not finite. */
+  async flipErrors(a: ImageSeries, b: ImageSeries, frame: number, isWanted = () => true): Promise<Float32Array | null> {
+    const [p, q] = await Promise.all([a, b].map((image) => this.store.get(image.frames[frame]!)));
+    const { width, height } = p!;
+    if (width !== q!.width || height !== q!.height) return null;
+    const light = [displayLight(p!, a.type, this.display), displayLight(q!, b.type, this.display)] as const;
+    const errors = await flipMap(light, { width, height }, this.report.pixelsPerDegree ?? usualPixelsPerDegree, isWanted);
+    if (!errors) return null;
+    for (const image of [p!, q!])
+      for (let i = 0; i < image.data.length; ++i) if (!Number.isFinite(image.value(i))) errors[i % errors.length] = NaN;
+    return errors;
   }
   difference(a: ImageSeries, b: ImageSeries, frame: number, exposure: number): Promise<Picture | null> {
     const [left, right] = [a.frames[frame], b.frames[frame]];

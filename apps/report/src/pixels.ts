@@ -18,7 +18,7 @@ export class Pixels {
   constructor(
     readonly about: Packed,
     /** Plane after plane; halves as their bits. */
-    readonly data: Uint8Array | Uint16Array | Uint32Array | Float32Array,
+    readonly data: Uint16Array | Uint32Array | Float32Array,
   ) {}
   get width() {
     return this.about.width;
@@ -29,10 +29,13 @@ export class Pixels {
   get bytes() {
     return this.data.byteLength;
   }
-  /** A value as a number; of maps within 0..1. */
+  /** A value as a number, by its place in `data`. */
+  value(place: number): number {
+    const raw = this.data[place]!;
+    return this.about.format === "f16" ? halfValues[raw]! : raw;
+  }
   at(x: number, y: number, channel: number): number {
-    const raw = this.data[(channel * this.height + y) * this.width + x]!;
-    return this.about.format === "f16" ? halfValues[raw]! : this.about.format === "u8" ? raw / 255 : raw;
+    return this.value((channel * this.height + y) * this.width + x);
   }
   all(x: number, y: number): number[] {
     return Array.from({ length: this.about.channels }, (_, channel) => this.at(x, y, channel));
@@ -55,7 +58,6 @@ async function inflate(bytes: Uint8Array): Promise<Uint8Array> {
 
 function join(bytes: Uint8Array, about: Packed): Pixels["data"] {
   const count = about.width * about.height * about.channels;
-  if (about.format === "u8") return bytes;
   if (about.format === "f16") {
     const values = new Uint16Array(count);
     for (let i = 0; i < count; ++i) values[i] = bytes[i]! | (bytes[count + i]! << 8);

@@ -30,7 +30,7 @@ function points(report: Report, metric: number): Point[] {
   const add = (name: string, frames: ((number | null)[] | null)[]) =>
     frames.forEach((figures, index) => {
       const value = figures?.[metric];
-      if (value !== null && value !== undefined) found.push({ frame: report.frames[index]!, value, name });
+      if (typeof value === "number" && Number.isFinite(value)) found.push({ frame: report.frames[index]!, value, name });
     });
   for (const [name, figures] of Object.entries(report.noisy)) add(`noisy (${name})`, figures.frames);
   for (const graph of report.graphs) {
@@ -73,7 +73,7 @@ export function showPlots(report: Report) {
   const grid = make("div", { class: "grid" });
   body.append(grid);
   report.metrics.forEach((metric, index) => {
-    const data = points(report, index);
+    const data = points(report, index); // equal images have an infinite psnr, which no axis holds: the table tells it
     if (data.length === 0) return;
     const place = make("div", { class: "plot" });
     const head = make("h3", { title: metric.summary }, metric.name, make("small", {}, ` ${metric.unit ? metric.unit + ", " : ""}${metric.name === "warped" ? "near 0" : metric.higher ? "higher" : "lower"} is better`));
@@ -105,8 +105,9 @@ interface Bar {
 export function showTimes(report: Report) {
   const body = find("times-body");
   const { threads, processor } = report.provenance;
+  const frames = Math.max(0, ...report.graphs.flatMap((graph) => graph.nodes.map((node) => node.seconds.length))); // that did not fail
   body.append(
-    make("p", {}, `What each node takes of a frame: the median of ${report.frames.length} frames, one node after the other, each on ${threads} thread${threads === 1 ? "" : "s"}${processor ? " of " + processor : ""}.`),
+    make("p", {}, `What each node takes of a frame: the median of ${frames} frame${frames === 1 ? "" : "s"}, one node after the other, each on ${threads} thread${threads === 1 ? "" : "s"}${processor ? " of " + processor : ""}.`),
   );
   const bars = report.graphs.map((graph) => graph.nodes.map((node): Bar => ({ node: node.name, pass: node.pass, ms: 1000 * median(node.seconds) })));
   const grid = make("div", { class: "grid" });

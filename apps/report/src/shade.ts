@@ -56,6 +56,21 @@ function tableFor(display: string, exposure: number): Uint8Array {
   return table;
 }
 
+// Of floats the bits behind the 9th of the fraction do not matter to a byte: a quarter of its step at most.
+const kFloatRest = 14;
+const isInfinite = (top: number) => (top & 0x1fe00) === 0x1fe00; // or NaN: all bits of the exponent
+let floatTable = new Uint8Array(0);
+let floatTableOf = "";
+function floatTableFor(display: string, exposure: number): Uint8Array {
+  const key = `${display} ${exposure}`;
+  if (floatTableOf === key) return floatTable;
+  const curve = displayCurve(display, exposure);
+  const middles = Uint32Array.from({ length: 1 << (32 - kFloatRest) }, (_, top) => (top << kFloatRest) | (1 << (kFloatRest - 1)));
+  floatTable = Uint8Array.from(new Float32Array(middles.buffer), (value) => toByte(curve(value) || 0));
+  floatTableOf = key;
+  return floatTable;
+}
+
 function shadeColor(pixels: Pixels, display: string, exposure: number, out: Uint32Array) {
   const count = out.length;
   if (pixels.about.format === "f16") {
@@ -70,16 +85,12 @@ function shadeColor(pixels: Pixels, display: string, exposure: number, out: Uint
     }
     return;
   }
-  const curve = displayCurve(display, exposure);
-  shadeTriples(pixels, curve, out);
-}
-
-function shadeTriples(pixels: Pixels, curve: Curve, out: Uint32Array) {
-  for (let y = 0, i = 0; y < pixels.height; ++y)
-    for (let x = 0; x < pixels.width; ++x, ++i) {
-      const [r, g, b] = [pixels.at(x, y, 0), pixels.at(x, y, 1), pixels.at(x, y, 2)];
-      out[i] = Number.isFinite(r + g + b) ? toByte(curve(r)) | (toByte(curve(g)) << 8) | (toByte(curve(b)) << 16) | (255 << 24) : wrong;
-    }
+  const bytes = floatTableFor(display, exposure);
+  const bits = new Uint32Array(pixels.data.buffer, pixels.data.byteOffset, pixels.data.length);
+  for (let i = 0; i < count; ++i) {
+    const [r, g, b] = [bits[i]! >>> kFloatRest, bits[count + i]! >>> kFloatRest, bits[2 * count + i]! >>> kFloatRest];
+    out[i] = isInfinite(r) || isInfinite(g) || isInfinite(b) ? wrong : bytes[r]! | (bytes[g]! << 8) | (bytes[b]! << 16) | (255 << 24);
+  }
 }
 
 const farAway = 1e10; // the depth of no surface
@@ -151,12 +162,27 @@ export function shade(pixels: Pixels, type: string, display: string, exposure: n
   return image;
 }
 
-/** A map of errors of 0..1, in FLIP's colors. */
-export function shadeMap(map: Pixels): ImageData {
-  const image = new ImageData(map.width, map.height);
+/** A map of errors of 0..1, in FLIP's colors; NaN where there is none. */
+export function shadeMap(errors: Float32Array, width: number, height: number): ImageData {
+  const image = new ImageData(width, height);
   const out = new Uint32Array(image.data.buffer);
-  for (let i = 0; i < out.length; ++i) out[i] = magma[map.data[i]!]!;
+  for (let i = 0; i < out.length; ++i) out[i] = Number.isNaN(errors[i]!) ? wrong : magma[toByte(errors[i]!)]!;
   return image;
+}
+
+/** The light that a display makes of a picture, plane after plane, and 0 of what is not finite. */
+export function displayLight(pixels: Pixels, type: string, display: string): Float32Array {
+  const curve = displayCurve(type === "albedo" ? "srgb" : display, 0);
+  const toLight = (v: number) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+  const light = new Float32Array(pixels.data.length);
+  const ofValue = (value: number) => (Number.isFinite(value) ? toLight(curve(value)) : 0);
+  if (pixels.about.format === "f16") {
+    const table = Float32Array.from(halfValues, ofValue);
+    for (let i = 0; i < light.length; ++i) light[i] = table[pixels.data[i]!]!;
+  } else {
+    for (let i = 0; i < light.length; ++i) light[i] = ofValue(pixels.data[i]!);
+  }
+  return light;
 }
 
 /** |a - b| of each channel, brighter with the exposure; in one channel in Viridis' colors. Nothing where sizes differ. */
@@ -169,12 +195,13 @@ export function shadeDifference(a: Pixels, b: Pixels, exposure: number): ImageDa
   for (let y = 0, i = 0; y < a.height; ++y)
     for (let x = 0; x < a.width; ++x, ++i) {
       let color = 255 << 24;
-      for (let c = 0; c < 3; ++c) {
-        const difference = c < channels ? Math.abs(a.at(x, y, c) - b.at(x, y, c)) : 0;
-        if (Number.isNaN(difference)) color = wrong;
-        else color |= toByte(difference * gain) << (8 * c);
+      let isWrong = false;
+      for (let c = 0; c < channels && c < 3; ++c) {
+        const [p, q] = [a.at(x, y, c), b.at(x, y, c)];
+        isWrong ||= !Number.isFinite(p) || !Number.isFinite(q);
+        color |= toByte(Math.abs(p - q) * gain) << (8 * c);
       }
-      out[i] = channels === 1 ? viridis[color & 255]! : color;
+      out[i] = isWrong ? wrong : channels === 1 ? viridis[color & 255]! : color;
     }
   return image;
 }

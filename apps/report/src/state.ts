@@ -1,7 +1,7 @@
 // What the viewer shows, and who wants to know when that changes.
 import type { Report } from "./data";
 
-export type Mode = "wipe" | "side" | "left" | "difference" | "flip";
+export type Mode = "wipe" | "side" | "left" | "difference" | "flip" | "errors";
 
 export interface State {
   left: number; // of Report.images
@@ -47,4 +47,12 @@ export function firstState(report: Report): State {
   const left = of("noisy") >= 0 ? of("noisy") : of("reference") >= 0 ? of("reference") : (results[0] ?? 0);
   const frame = report.inner.at(-1) ?? report.kept.at(-1) ?? 0;
   return { left, right, mode: "wipe", frame, exposure: 0, wipe: 0.5, pixel: null };
+}
+
+/** One picture of two images. */
+export function isBetween(mode: Mode): boolean {
+  return mode === "difference" || mode === "flip";
+}
+export function referenceOf(report: Report) {
+  return report.images.find((image) => image.kind === "reference");
 }

@@ -1,12 +1,13 @@
 // What became of a pixel, pass by pass.
 import { type Graph, type GraphNode, type ImageSeries, type NodeOutput, title } from "./data";
+import { imageOf, readInputs } from "./node_inputs";
 import type { Pictures } from "./pictures";
 import type { Pixels } from "./pixels";
 import { displayCurve } from "./shade";
 import type { Store } from "./state";
-import { apply, findTaps, type Inputs, isFilter, type Taps } from "./taps";
+import { findTaps, meanOf } from "./taps";
 import { find, make, valueText } from "./text";
-import { describeWeights } from "./weights";
+import { describeWeights, type Weights } from "./weights";
 
 interface Value {
   image: ImageSeries;
@@ -113,14 +114,14 @@ export class Story {
         const isLength = output.type === "scalar" && /length/.test(output.port);
         const first = make("th", { scope: "row", title: node.doc || node.summary });
         first.append(make("b", {}, node.name), " ", make("small", {}, node.pass));
-        entries.push({ first, port: isLength ? `${output.port} (frames of history)` : this.portText(output), image: this.image(output), isLength, node });
+        entries.push({ first, port: isLength ? `${output.port} (frames of history)` : this.portText(output), image: imageOf(report, this.graph, output), isLength, node });
       }
     const reference = report.images.find((image) => image.kind === "reference");
     entries.push({ first: make("th", { scope: "row" }, "reference"), port: "", image: reference });
     const values = await Promise.all(entries.map(({ image }) => this.value(image, frame)));
     const weights = new Map<GraphNode, HTMLElement>();
     await Promise.all(
-      graph.nodes.filter(isFilter).map(async (node) => {
+      graph.nodes.map(async (node) => {
         const row = await this.weightsRow(node, frame);
         if (row) weights.set(node, row);
       }),
@@ -135,39 +136,31 @@ export class Story {
     });
   }
 
-  /** What a source of the graph yields. */
-  private source(from: string): ImageSeries | undefined {
-    const { images, graphs } = this.store.report;
-    const output = graphs[this.graph]!.nodes.flatMap((node) => node.outputs).find((other) => other.name === from);
-    if (output) return this.image(output);
-    return images.find((image) => (image.kind === "noisy" || image.kind === "input") && image.name === from);
-  }
-
-  /** The weights of a filter's taps at a pixel of its own image, what they make of it, and what the pass made. */
-  async weights(node: GraphNode, frame: number, pixel?: [number, number]): Promise<{ taps: Taps; at: [number, number]; made: number[]; given: number[] } | null> {
-    if (node.inputs.some((input) => input.delay)) return null; // images of other frames are not here
-    const ports = new Map<string, Pixels[]>();
-    for (const input of node.inputs) {
-      const number = this.source(input.from)?.frames[frame];
-      if (number !== undefined) ports.set(input.port, [...(ports.get(input.port) ?? []), await this.pictures.store.get(number)]);
-    }
-    const inputs: Inputs = { all: (port) => ports.get(port) ?? [] };
-    const image = [...ports.values()][0]?.[0];
-    if (!image || (!pixel && !this.store.state.pixel)) return null;
+  /** The weights at a pixel of what a filter yields, and what the pass made there; or why there are none. Null: nothing to tell. */
+  private async weights(node: GraphNode, frame: number, pixel?: [number, number]): Promise<Weights | string | null> {
+    const mean = meanOf(node);
+    if (!mean) return null;
+    if ("why" in mean) return mean.why;
+    const { report } = this.store;
+    const output = node.outputs.find((other) => other.port === mean.output);
+    const number = output && imageOf(report, this.graph, output)?.frames[frame];
+    const inputs = await readInputs(report, this.pictures.store, this.graph, node, frame);
+    if (typeof inputs === "string") return inputs;
+    if (number === undefined) return `'${node.name}.${mean.output}' of frame ${frame} is not in this report`;
+    const image = await this.pictures.store.get(number);
     const at = pixel ?? this.place(this.store.state.pixel!, image);
-    const taps = findTaps(node, inputs, ...at);
-    const output = taps && node.outputs.find((other) => other.port === taps.output);
-    const number = output && this.image(output)?.frames[frame];
-    if (!taps || number === undefined || number === null) return null;
-    const given = (await this.pictures.store.get(number)).all(...at);
-    return { taps, at, made: apply(taps.taps, inputs.all(taps.port)[0]!), given };
+    const taps = findTaps(node, inputs, at, image);
+    return typeof taps === "string" ? taps : { ...taps, given: image.all(...at) };
   }
   private async weightsRow(node: GraphNode, frame: number): Promise<HTMLElement | null> {
     const found = await this.weights(node, frame);
     if (!found) return null;
-    const details = make("details", {}, make("summary", {}, `weights of ${found.taps.taps.length} tap${found.taps.taps.length === 1 ? "" : "s"}`));
-    details.addEventListener("toggle", () => details.open && details.children.length === 1 && details.append(describeWeights(found.taps, found.at, found.made, found.given)));
-    return make("tr", { class: "weights" }, make("th", { scope: "row", class: "again" }, make("b", {}, node.name)), make("td", { colspan: "3" }, details));
+    const row = (...what: (Node | string)[]) =>
+      make("tr", { class: "weights" }, make("th", { scope: "row", class: "again" }, make("b", {}, node.name)), make("td", { colspan: "3" }, ...what));
+    if (typeof found === "string") return row(make("small", {}, `no weights: ${found}`));
+    const details = make("details", {}, make("summary", {}, `weights of ${found.taps.length} tap${found.taps.length === 1 ? "" : "s"}`));
+    details.addEventListener("toggle", () => details.open && details.children.length === 1 && details.append(describeWeights(found)));
+    return row(details);
   }
   /** For tests: of a node by its name. */
   async weightsOf(graph: number, name: string, x: number, y: number) {
@@ -178,12 +171,6 @@ export class Story {
   private portText(output: NodeOutput): string {
     return output.result ? `${output.port} → output ${output.result}` : output.port;
   }
-  private image(output: NodeOutput): ImageSeries | undefined {
-    const name = output.result ?? output.name;
-    const kind = output.result ? "result" : "inner";
-    return this.store.report.images.find((image) => image.graph === this.graph && image.kind === kind && image.name === name);
-  }
-
   private cells({ image, values }: Value): HTMLElement[] {
     const numbers = make("td", { class: "number" }, make("code", {}, values.map(valueText).join("  ")));
     const mark = make("td");

@@ -61,7 +61,7 @@ export function showFigures(report: Report) {
       sorted.sort((a, b) => {
         if (order.column < 0) return sign * a.name.localeCompare(b.name);
         const [x, y] = [a.values[order.column] ?? null, b.values[order.column] ?? null];
-        return x === null || y === null ? Number(x === null) - Number(y === null) : sign * (x - y); // what is not known comes last
+        return x === null || y === null ? Number(x === null) - Number(y === null) : x === y ? 0 : sign * (x - y); // what is not known comes last
       });
     }
     body.replaceChildren(

@@ -11,6 +11,7 @@ export function valueText(value: number): string {
 
 export function figureText(value: number | null | undefined): string {
   if (value === null || value === undefined) return "–";
+  if (!Number.isFinite(value)) return valueText(value);
   const size = Math.abs(value);
   return value.toFixed(size >= 10 ? 2 : size >= 0.1 ? 4 : 5).replace("-", "−");
 }

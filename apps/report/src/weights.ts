@@ -3,10 +3,12 @@ import { interpolateViridis } from "d3-scale-chromatic";
 import type { Taps } from "./taps";
 import { make, valueText } from "./text";
 
+export type Weights = Taps & { given: number[] };
+
 const kMostListed = 8;
 
-/** Each tap as a square, brighter the more it weighs; the pixel itself has a frame. */
-function drawTaps({ taps }: Taps, [x, y]: [number, number]): HTMLElement {
+/** Each tap as a square, brighter the more it weighs, red where that is below 0; the pixel itself has a frame. */
+function drawTaps({ taps, center: [x, y] }: Taps): HTMLElement {
   const reach = Math.max(1, ...taps.map((tap) => Math.max(Math.abs(tap.x - x), Math.abs(tap.y - y))));
   // Where taps are apart, the steps between them are left out.
   const apart = taps.map((tap) => Math.max(Math.abs(tap.x - x), Math.abs(tap.y - y))).filter((distance) => distance > 0);
@@ -19,7 +21,7 @@ function drawTaps({ taps }: Taps, [x, y]: [number, number]): HTMLElement {
   const most = Math.max(...taps.map((tap) => tap.weight));
   for (const tap of taps) {
     const place = [tap.x - x, tap.y - y].map((offset) => (offset / step + (side - 1) / 2) * cell) as [number, number];
-    context.fillStyle = interpolateViridis(tap.weight / most);
+    context.fillStyle = tap.weight < 0 ? "#b00020" : interpolateViridis(tap.weight / most);
     context.fillRect(place[0], place[1], cell - (cell > 6 ? 1 : 0), cell - (cell > 6 ? 1 : 0));
   }
   context.strokeStyle = "#f33";
@@ -28,21 +30,33 @@ function drawTaps({ taps }: Taps, [x, y]: [number, number]): HTMLElement {
   return canvas;
 }
 
-function listTaps({ taps }: Taps, [x, y]: [number, number]): HTMLElement {
+/** Taps of several images lie in one place: what differs is whose they are. */
+function listTaps({ taps, center: [x, y] }: Taps, hasImages: boolean): HTMLElement {
   const heaviest = [...taps].sort((a, b) => b.weight - a.weight).slice(0, kMostListed);
   const signed = (value: number) => (value > 0 ? `+${value}` : String(value).replace("-", "−"));
-  const rows = heaviest.map((tap) =>
-    make("tr", {}, make("td", {}, `${signed(tap.x - x)}, ${signed(tap.y - y)}`), make("td", { class: "number" }, `${(100 * tap.weight).toFixed(3)} %`)),
-  );
-  const head = make("tr", {}, make("th", { scope: "col" }, "from the pixel"), make("th", { scope: "col" }, "weight"));
+  const rows = heaviest.map((tap) => {
+    const what = hasImages ? tap.port : `${signed(tap.x - x)}, ${signed(tap.y - y)}`;
+    const weight = make("td", { class: "number" }, `${(100 * tap.weight).toFixed(3).replace("-", "−")} %`);
+    return make("tr", {}, make("td", {}, what), weight, ...(hasImages ? [make("td", { class: "number" }, tap.values.map(valueText).join("  "))] : []));
+  });
+  const heads = hasImages ? ["image", "weight", "value"] : ["from the center", "weight"];
+  const head = make("tr", {}, ...heads.map((text) => make("th", { scope: "col" }, text)));
   return make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows));
 }
 
-export function describeWeights(taps: Taps, at: [number, number], made: number[], given: number[]): HTMLElement {
-  const sum = taps.taps.reduce((total, tap) => total + tap.weight, 0);
+/** How far what they make is from what the pass gave. */
+function difference({ made, given }: Weights): string {
   const off = Math.max(...made.map((value, i) => Math.abs(value - given[i]!)));
-  const words = `They sum to ${sum.toFixed(6)} and make ${made.map(valueText).join("  ")} of '${taps.port}'; the pass gave ${given
+  return off === 0 ? "the same" : `${off.toExponential(1).replace("-", "−")} apart`;
+}
+
+export function describeWeights(weights: Weights): HTMLElement {
+  const { taps, port, center, made, given, isLimited } = weights;
+  const sum = taps.reduce((total, tap) => total + tap.weight, 0);
+  const hasImages = taps.some((tap) => tap.port !== port && tap.port !== "outside");
+  const what = hasImages ? "" : ` of '${port}' around x ${center[0]}, y ${center[1]}`;
+  const words = `They sum to ${sum.toFixed(6)} and make ${made.map(valueText).join("  ")}${what}${isLimited ? ", after it was limited or scaled" : ""}; the pass gave ${given
     .map(valueText)
-    .join("  ")}: ${off === 0 ? "the same" : `${off.toExponential(1).replace("-", "−")} apart`}.`;
-  return make("div", { class: "taps" }, drawTaps(taps, at), listTaps(taps, at), make("p", {}, words));
+    .join("  ")}: ${difference(weights)}.`;
+  return make("div", { class: "taps" }, ...(hasImages ? [] : [drawTaps(weights)]), listTaps(weights, hasImages), make("p", {}, words));
 }

@@ -43,14 +43,8 @@ export function readExr(file) {
   };
 }
 
-function halfBits(value) {
-  if (value === 0) return 0;
-  const exponent = Math.floor(Math.log2(value));
-  return ((exponent + 15) << 10) | Math.floor((value / 2 ** exponent - 1) * 1024);
-}
-
-/** An image of half floats, not compressed, whose rows are all the same: `row` has those of red, green and blue, 2^-14 to 2. */
-export function writeExr(file, width, height, row) {
+/** An image of half floats, not compressed; `bits` of row y are those of blue, then green, then red. */
+export function writeExr(file, width, height, bits) {
   const text = (value) => Buffer.from(`${value}\0`, "latin1");
   const ints = (...values) => Buffer.from(Int32Array.from(values).buffer);
   const floats = (...values) => Buffer.from(Float32Array.from(values).buffer);
@@ -69,9 +63,9 @@ export function writeExr(file, width, height, row) {
     attribute("screenWindowWidth", "float", floats(1)),
     Buffer.alloc(1),
   ]);
-  const values = Buffer.concat([2, 1, 0].map((c) => Buffer.from(Uint16Array.from(row[c], halfBits).buffer)));
-  const lines = Array.from({ length: height }, (_, y) => [ints(y, values.length), values]);
-  const size = 8 + values.length;
+  const bytes = 6 * width;
+  const lines = Array.from({ length: height }, (_, y) => [ints(y, bytes), Buffer.from(bits(y).buffer)]);
+  const size = 8 + bytes;
   const places = BigUint64Array.from({ length: height }, (_, y) => BigInt(header.length + 8 * height + y * size));
   writeFileSync(file, Buffer.concat([header, Buffer.from(places.buffer), ...lines.flat()]));
 }

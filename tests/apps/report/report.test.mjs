@@ -1,91 +1,18 @@
 // quell report, as a person meets it: made by the program, opened in headless Chromium from disk.
 //   node report.test.mjs QUELL SOURCE_DIR
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { cpSync, existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { spawnSync } from "node:child_process";
+import { cpSync, mkdirSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
-import { pathToFileURL } from "node:url";
+import { before, test } from "node:test";
 import { readExr } from "./exr.mjs";
+import { choosePixel, folder, open, quell, run, sample } from "./page.mjs";
 
-const [quell, source] = process.argv.slice(2);
-const browserFile = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
-const skip = (why) => {
-  console.log(`skipped: ${why}`);
-  process.exit(77);
-};
-if (!browserFile) skip("there is no chromium");
-const { chromium } = await import("playwright-core").catch(() => skip("playwright-core is not installed: npm ci in tests/apps/report"));
-
-const kFlags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"];
 const kFrames = "1-3";
-const folder = mkdtempSync(join(tmpdir(), "quell-report-"));
-const sample = join(source, "graphs/sample");
-const run = (...words) => execFileSync(quell, [...words, "-q"], { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
-let browser;
-
-before(async () => {
+before(() => {
   run("report", sample, "games202", "svgf", "--frames", kFrames, "-o", "report.html");
   run("run", "svgf", sample, "--frames", kFrames, "-o", "svgf", "--compression", "none", "--type", "half");
-  browser = await chromium.launch({ executablePath: browserFile, args: [...kFlags, "--disable-component-update", "--disable-sync"] });
 });
-after(async () => {
-  await browser?.close();
-  rmSync(folder, { recursive: true });
-});
-
-/** A page whose complaints and requests are told at the end. */
-async function open(file = "report.html", options = {}) {
-  const page = await browser.newPage({ viewport: { width: 1280, height: 900 }, ...options });
-  const troubles = [];
-  page.on("console", (message) => ["error", "warning"].includes(message.type()) && troubles.push(message.text()));
-  page.on("pageerror", (error) => troubles.push(error.message));
-  page.on("request", (request) => /^(file|data|blob):/.test(request.url()) || troubles.push(`asks for ${request.url()}`));
-  await page.goto(pathToFileURL(join(folder, file)).href);
-  await page.evaluate(() => window.reportReady());
-  const ready = () => page.evaluate(() => window.reportReady());
-  return {
-    page,
-    ready,
-    press: async (...keys) => {
-      for (const key of keys) await page.keyboard.press(key);
-      await ready();
-    },
-    /** The color of the canvas at a part of its width and height. */
-    color: (x, y) =>
-      page.evaluate(
-        ([u, v]) => {
-          const canvas = document.querySelector("canvas");
-          const context = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
-          context.drawImage(canvas, -Math.floor(u * canvas.width), -Math.floor(v * canvas.height));
-          return [...context.getImageData(0, 0, 1, 1).data].slice(0, 3);
-        },
-        [x, y],
-      ),
-    /** What the readout says of an image. */
-    values: async (name) => {
-      const text = await page.locator("#readout .values", { hasText: name }).locator("code").textContent();
-      return text.replaceAll("−", "-").split(/\s+/).map(Number);
-    },
-    picture: () => page.evaluate(() => document.querySelector("canvas").toDataURL()),
-    end: async () => {
-      await page.close();
-      assert.deepEqual(troubles, []);
-    },
-  };
-}
-
-async function choosePixel({ page, ready }, x, y, [middleX, middleY] = [160, 90]) {
-  await page.focus("#canvas");
-  await page.keyboard.press("ArrowLeft"); // chooses the middle of the picture
-  for (const [from, to, less, more] of [[middleX, x, "ArrowLeft", "ArrowRight"], [middleY, y, "ArrowUp", "ArrowDown"]]) {
-    const key = to < from ? less : more;
-    for (let i = 0; i < Math.floor(Math.abs(to - from) / 10); ++i) await page.keyboard.press(`Shift+${key}`);
-    for (let i = 0; i < Math.abs(to - from) % 10; ++i) await page.keyboard.press(key);
-  }
-  await ready();
-}
 
 test("opens from disk without a word on the console and without a request", async () => {
   const report = await open();
@@ -127,12 +54,12 @@ test("number keys switch images, and letters how they are shown", async () => {
   await report.press("x");
   assert.deepEqual(await chosen(), ["games202", "reference"]);
   const pictures = new Set();
-  for (const [key, mode] of [["w", "wipe"], ["s", "side"], ["l", "left"], ["d", "difference"], ["f", "flip"]]) {
+  for (const [key, mode] of [["w", "wipe"], ["s", "side"], ["l", "left"], ["d", "difference"], ["f", "flip"], ["e", "errors"]]) {
     await report.press(key);
     assert.equal(await report.page.locator("#modes input:checked").getAttribute("value"), mode);
     pictures.add(await report.picture());
   }
-  assert.equal(pictures.size, 5);
+  assert.equal(pictures.size, 6);
   await report.end();
 });
 
@@ -172,6 +99,91 @@ test("an image differs from itself nowhere, and an exposure makes it brighter", 
   assert.ok(bright[0] > dark[0] + 20, `${bright} after ${dark}`);
   assert.equal(await report.page.textContent("#exposure-text"), "+1");
   await report.end();
+});
+
+test("FLIP between any two images, and against the reference, is what quell compare measures", async () => {
+  run("run", "games202", sample, "--frames", kFrames, "-o", "games", "--compression", "none", "--type", "half");
+  const report = await open();
+  const { images } = await report.page.evaluate(() => JSON.parse(document.getElementById("report").textContent));
+  const index = (kind, graph) => images.findIndex((image) => image.kind === kind && (graph === undefined || image.graph === graph));
+  const [reference, games, svgf] = [index("reference"), index("result", 0), index("result", 1)];
+  const files = { [reference]: join(sample, "reference.####.exr"), [games]: "games/color.####.exr", [svgf]: "svgf/color.####.exr" };
+  for (const [a, b] of [[reference, svgf], [games, svgf]]) {
+    const told = run("compare", files[a], `it=${files[b]}`, "--frames", "1-2", "--metrics", "flip", "--csv", "-").toString();
+    const lines = told.trim().split("\n").map((line) => line.split(","));
+    for (const frame of [1, 2]) {
+      const want = Number(lines.find((line) => line[0] === String(frame))[lines[0].indexOf("flip")]);
+      const errors = await report.page.evaluate((what) => window.reportFlip(...what), [a, b, frame]);
+      assert.equal(errors.length, 320 * 180);
+      const got = errors.reduce((sum, error) => sum + error, 0) / errors.length;
+      assert.ok(want > 0.02 && Math.abs(got - want) < 1e-4, `frame ${frame} of ${files[b]}: ${got}, not ${want}`);
+    }
+  }
+  await report.press("3", "Shift+Digit3", "f");
+  assert.deepEqual(await report.color(0.5, 0.5), [0, 0, 4]); // the color of no error
+  assert.match(await report.page.textContent("#left-name"), /FLIP of games202 and games202/);
+  const flat = await report.picture();
+  await report.page.evaluate(async () => {
+    for (const key of [..."22,.,.,.,"]) {
+      document.getElementById("canvas").dispatchEvent(new KeyboardEvent("keydown", { key, code: `Digit${key}`, bubbles: true }));
+      await new Promise((done) => setTimeout(done, 15)); // in the midst of what was asked for
+    }
+  });
+  await report.ready();
+  assert.equal(await report.page.isVisible("#absent"), false, "what is asked for again is not taken for what was given up");
+  const hurried = await report.picture();
+  assert.notEqual(hurried, flat);
+  await report.press("w", "f");
+  assert.equal(await report.picture(), hurried);
+  await report.press("3", "e", "Shift+Digit2");
+  assert.notDeepEqual(await report.color(0.25, 0.5), [0, 0, 4]);
+  assert.deepEqual(await report.color(0.75, 0.5), [0, 0, 4]); // of the reference itself
+  await report.page.selectOption("#left", { label: "svgf: reproject.valid" });
+  await report.press("f");
+  assert.equal(await report.page.textContent("#absent"), "FLIP is between colors of one size");
+  await report.end();
+});
+
+test("figures of equal images are told as infinite", async () => {
+  run("report", sample, "games202", "--frames", "1-2", "--reference", "color", "--metrics", "psnr,mse", "--inner", "none", "-o", "equal.html");
+  const report = await open("equal.html");
+  const row = await report.page.locator("#figures tbody tr", { hasText: "noisy" }).locator("td").allTextContents();
+  assert.deepEqual(row.slice(0, 2), ["∞", "0.00000"]);
+  assert.equal(await report.page.locator("#plots .plot svg").first().locator("[aria-label=line] path").count(), 1);
+  await report.end();
+});
+
+test("Play that is pressed twice goes one frame at a time", async () => {
+  const report = await open();
+  const steps = await report.page.evaluate(async () => {
+    for (let i = 0; i < 5; ++i) document.getElementById("play").click();
+    let count = 0;
+    const observer = new MutationObserver(() => ++count);
+    observer.observe(document.getElementById("frame-text"), { childList: true });
+    await new Promise((done) => setTimeout(done, 1000));
+    document.getElementById("play").click();
+    return count;
+  });
+  assert.ok(steps >= 2 && steps <= 9, `${steps} frames in a second`); // 8 of one timer
+  assert.equal(await report.page.textContent("#play"), "Play");
+  await report.end();
+});
+
+test("what is not finite is shown as such in a difference", async () => {
+  const report = await open();
+  const difference = await report.page.evaluate(() => window.reportDifference([NaN, 1, Infinity, 2], [1, 1, Infinity, 1.5]));
+  assert.deepEqual(difference, [[255, 0, 255], [0, 0, 0], [255, 0, 255], [128, 128, 128]]);
+  await report.end();
+});
+
+test("three graphs on the sample make less than 40 MB in less than two minutes", () => {
+  const start = Date.now();
+  const { stderr } = spawnSync(quell, ["report", sample, "games202", "svgf", "best", "-o", "three.html", "-v"], { cwd: folder, encoding: "utf8" });
+  const [seconds, bytes] = [(Date.now() - start) / 1000, statSync(join(folder, "three.html")).size];
+  const told = 1e6 * Number(/the report will have about (\d+) MB/.exec(stderr)[1]);
+  console.log(`${(bytes / 1e6).toFixed(1)} MB in ${seconds.toFixed(1)} s; ${(told / 1e6).toFixed(0)} MB were expected`);
+  assert.ok(bytes < 40e6 && seconds < 120);
+  assert.ok(told > 0.9 * bytes && told < 1.5 * bytes, "the size is told before, for noise");
 });
 
 test("zoom goes down to pixels, keeps its place and is the same for both images", async () => {
@@ -223,61 +235,17 @@ test("a pixel's story tells what each pass yields, and how long its history is",
   const rows = await report.page.locator("#story tbody tr").allTextContents();
   for (const node of ["light", "reproject", "moments", "blend", "variance", "level0", "level4", "result"])
     assert.ok(rows.some((row) => row.startsWith(node)), `no ${node} in ${rows}`);
-  const length = await report.page.locator("#story tr.length td.number").allTextContents();
-  assert.ok(length.map(Number).every((frames) => frames >= 1 && frames <= 3), `${length}`);
+  // This is the third frame, and the pixel was seen in both before.
+  const length = await report.page.locator("#story tr.length").allTextContents();
+  assert.deepEqual(length.map((row) => row.replaceAll(/\s+/g, " ").trim()), [
+    "moments momentslength (frames of history)3",
+    "blend temporal_blendlength (frames of history)3",
+  ]);
   const result = await report.page.locator("#story tr", { hasText: "output color" }).locator("td.number").textContent();
   assert.equal(result.trim(), (await report.page.locator("#readout .values", { hasText: "svgf" }).locator("code").textContent()).trim());
   await report.page.selectOption("#story-graph", { label: "games202" });
   await report.ready();
   assert.ok((await report.page.locator("#story tbody tr").allTextContents()).some((row) => row.startsWith("filter")));
-  await report.end();
-});
-
-test("weights of every filter sum to 1 and reproduce what its pass gave", async () => {
-  const guides = { normal: "normal", position: "position" };
-  const svgf = { normal: "normal", depth: "depth", variance: "variance.variance" };
-  const color = "color";
-  const nodes = {
-    moments: { pass: "moments", in: { color } },
-    slope: { pass: "depth_gradient", in: { depth: "depth" } },
-    variance: { pass: "variance", in: { moments: "moments.moments", color, depth: "depth", depth_gradient: "slope.gradient", normal: "normal" },
-      params: { filter_color: true, sigma_l: 2 } },
-    variance_blur: { pass: "variance_blur", in: { variance: "variance.variance" } },
-    gaussian: { pass: "gaussian", in: { image: "color" }, params: { sigma: 1.5 } },
-    bilateral: { pass: "bilateral", in: { color } },
-    joint: { pass: "joint_bilateral", in: { color, ...guides }, params: { radius: 5 } },
-    joint_world: { pass: "joint_bilateral", in: { color, ...guides }, params: { radius: 4, coord: "world", sigma_coord: 0.5, normal_measure: "difference" } },
-    joint_z: { pass: "joint_bilateral", in: { color, ...guides }, params: { radius: 4, surface: "z", sigma_color: 3 } },
-    joint_alone: { pass: "joint_bilateral", in: { color }, params: { radius: 3 } },
-    svgf: { pass: "atrous", in: { color: "variance.color", ...svgf }, params: { level: 1 } },
-    svgf_given: { pass: "atrous", in: { color: "variance.color", ...svgf, depth_gradient: "slope.gradient", blurred_variance: "variance_blur.variance" },
-      params: { level: 2, sigma_l: 10, eps_variance: 1e-4 } },
-    dammertz: { pass: "atrous", in: { color, ...guides }, params: { stops: "dammertz", level: 1, phi_normal: 1 } },
-    games: { pass: "atrous", in: { color, ...guides }, params: { stops: "joint_bilateral", level: 1 } },
-    nlm: { pass: "nlm", in: { color, variance: "variance.variance", feature: ["albedo", "normal"] }, params: { radius: 4, patch_radius: 1 } },
-  };
-  const [guided, own] = [Object.keys(nodes).slice(2), { variance_blur: "variance", gaussian: "image" }];
-  const outputs = Object.fromEntries(guided.map((name) => [`of_${name}`, `${name}.${own[name] ?? "color"}`]));
-  const inputs = { color: "color", albedo: "albedo", normal: "normal", position: "position", depth: "depth" };
-  writeFileSync(join(folder, "filters.json"), JSON.stringify({ quell: 1, inputs, nodes, outputs }));
-  run("report", sample, "filters.json", "--frames", "2", "--crop", "200,60,70,50", "-o", "filters.html");
-  const report = await open("filters.html");
-  const seen = new Set(guided.map((name) => nodes[name].pass));
-  assert.deepEqual([...seen].sort(), (await report.page.evaluate(() => window.reportFilters)).sort());
-  for (const name of guided)
-    for (const [x, y] of [[0, 0], [69, 49], [13, 7], [30, 25], [45, 40], [62, 3]]) {
-      const found = await report.page.evaluate(([node, at]) => window.reportWeights(0, node, ...at), [name, [x, y]]);
-      assert.ok(found, `${name} has no weights at ${x}, ${y}`);
-      const sum = found.taps.taps.reduce((total, tap) => total + tap.weight, 0);
-      assert.ok(Math.abs(sum - 1) < 1e-12, `${name}: ${sum}`);
-      found.made.forEach((value, i) => {
-        const want = found.given[i];
-        assert.ok(Math.abs(value - want) <= 1e-5 * Math.max(1, Math.abs(want)), `${name} at ${x}, ${y}: ${found.made}, not ${found.given}`);
-      });
-    }
-  await choosePixel(report, 30, 25, [35, 25]);
-  await report.page.locator("#story tr.weights summary").first().click();
-  assert.match(await report.page.textContent("#story .taps p"), /sum to 1\.000000 .* apart|the same/);
   await report.end();
 });
 
