@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "arguments.h"
+#include "checkpointed_run.h"
 #include "commands.h"
 #include "graph_files.h"
 #include "interrupt.h"
@@ -38,6 +39,7 @@ struct Arguments {
   VerbosityArguments verbosity;
   OutputArguments output;
   ReferenceArguments reference;
+  CheckpointArguments checkpoint;
   std::vector<std::string> dumps;
   std::optional<std::filesystem::path> log_json, trace;
   std::optional<std::string> tev;
@@ -87,6 +89,7 @@ struct Preparation {
   std::vector<ResultFiles> results;
   std::map<std::string, std::string> labels;  ///< of the results, as label_results() has them
   SessionOptions options;
+  std::optional<Checkpoints> checkpoints;
 };
 
 /// Runs that follow each other.
@@ -156,7 +159,9 @@ RerunReport run_frames(Preparation& run, SessionOptions options, Progress& progr
     return watch->rerun.run(job.graph, job.frames, *job.sequence, sink, options, run.labels);
   }
   RerunReport report;
-  report.frames = session.emplace(job.graph, options).run(job.frames, *job.sequence, sink);
+  session.emplace(job.graph, options);
+  report.frames = run.checkpoints ? run_with_checkpoints(*session, job, sink, *run.checkpoints, options)
+                                  : session->run(job.frames, *job.sequence, sink);
   report.peak_bytes = session->pool().usage().peak;
   return report;
 }
@@ -186,7 +191,9 @@ ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log,
                               rerun.peak_bytes,
                               run.measuring.get()};
   if (!is_all_kept) tell_outcome(outcome);
-  const ExitCode code = finish_trace(trace, exit_code_of(ending));
+  ExitCode code = finish_trace(trace, exit_code_of(ending));
+  if (run.checkpoints && !tell_past_failures(*run.checkpoints) && code == kOk) code = kFramesFailed;
+  if (run.checkpoints && !run.checkpoints->ok && code == kOk) code = kInternal;
   log.end(outcome, code);
   return code;
 }
@@ -216,6 +223,7 @@ void check_video(const Arguments& arguments) {
   if (arguments.output.compression != OutputArguments().compression) refuse("--compression");
   if (!arguments.output.padding.empty()) refuse("--padding");
   if (arguments.watch) refuse("--watch");
+  if (arguments.checkpoint.folder) refuse("--checkpoint");
   check_video_file(arguments.output.folder);
 }
 
@@ -284,6 +292,8 @@ Preparation prepare(const Arguments& arguments, Watch* watch) {
 
 ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, Watch* watch = nullptr) {
   Preparation run = prepare(arguments, watch);
+  run.checkpoints = prepare_checkpoints(arguments.checkpoint, arguments.sequence, run.job, run.options);
+  if (run.job.frames.empty()) return tell_past_failures(*run.checkpoints) ? kOk : kFramesFailed;
   const SessionOptions& options = run.options;
   const int threads = options.threads > 0 ? options.threads : available_threads();
   const Window window = choose_window(run.job.plan, threads, options.frames_in_flight, options.memory);
@@ -295,6 +305,7 @@ ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, W
   spdlog::debug("computing on {}", current_isa());
   prepare_folder(is_video(arguments.output.folder) ? folder_of(arguments.output.folder) : arguments.output.folder);
   open_sinks(run, arguments, watch);
+  if (run.checkpoints) prepare_folder(run.checkpoints->folder.folder(), "--checkpoint");
   log.start(run.job, run.results, options, window);
   std::optional<TraceFile> trace;
   if (arguments.trace) trace.emplace(*arguments.trace);
@@ -310,6 +321,8 @@ ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, W
 /// Runs, and again whenever the graph is saved, until a signal comes: between runs that is a good end.
 ExitCode run_watching(const Arguments& arguments, RunLog& log, Console& console) {
   if (arguments.dry_run) throw Error(Fault::usage, "--watch", "there is nothing to watch with --dry-run; leave one of them out");
+  if (arguments.checkpoint.folder)
+    throw Error(Fault::usage, "--watch", "--checkpoint is for a single run; leave one of them out");
   if (arguments.trace) throw Error(Fault::usage, "--watch", "--trace is for a single run; leave one of them out");
   Watch watch(arguments);
   ExitCode code = run_logged(arguments, log, console, &watch);
@@ -382,6 +395,7 @@ Command add_run(CLI::App& program) {
   add_options(app, arguments->reference);
   add_output_options(app, *arguments);
   add_options(app, arguments->schedule);
+  add_options(app, arguments->checkpoint);
   add_options(app, arguments->isa);
   app.add_flag("--watch", arguments->watch,
                "After the run wait until the graph file, one that it includes or a --params file is saved, and compute anew what "
