@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "quell/sequence/item_file.h"
+#include "quell/sequence/pending_file.h"
 #include "quell/text/error.h"
 
 namespace quell::app {
@@ -31,18 +32,13 @@ std::string name_of_file(std::size_t number, const SavedHistory::Kept& kept) {
   throw Error(Fault::frame, file.string(), "the checkpoint cannot be written: " + error.message());
 }
 
-/// Another file of that name is replaced at once, or stays.
 void replace_text(const fs::path& file, const std::string& text) {
-  const fs::path temporary = file.string() + "." + std::to_string(getpid()) + ".tmp";
-  std::ofstream stream(temporary, std::ios::binary);
+  PendingFile pending(file);
+  std::ofstream stream(pending.path(), std::ios::binary);
   stream << text;
   stream.close();
-  std::error_code error = stream ? std::error_code() : std::make_error_code(std::errc::io_error);
-  if (!error) fs::rename(temporary, file, error);
-  if (!error) return;
-  std::error_code ignored;
-  fs::remove(temporary, ignored);
-  fail(file, error);
+  if (!stream) fail(file, std::make_error_code(std::errc::io_error));
+  pending.commit();
 }
 
 }  // namespace

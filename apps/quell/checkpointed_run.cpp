@@ -58,17 +58,16 @@ void write_checkpoint(Session& session, Checkpoints& checkpoints, const std::vec
 }  // namespace
 
 void add_options(CLI::App& app, CheckpointArguments& arguments) {
-  const auto group = kScheduleGroup;
   app.add_option("--checkpoint", arguments.folder,
                  "A folder to keep the history in, so that --resume can go on with it, bit for bit.")
       ->type_name("FOLDER")
-      ->group(group);
+      ->group(kScheduleGroup);
   app.add_option("--every", arguments.every, "Frames between checkpoints; 100 by default. One is written at the end as well.")
       ->type_name("N")
-      ->group(group);
+      ->group(kScheduleGroup);
   app.add_flag("--resume", arguments.resume, "Go on after the checkpoint's frame; begin where there is none yet.")
       ->disable_flag_override()
-      ->group(group);
+      ->group(kScheduleGroup);
 }
 
 std::optional<Checkpoints> prepare_checkpoints(const CheckpointArguments& arguments, const SequenceArguments& sequence, Job& job,

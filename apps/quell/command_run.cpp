@@ -290,10 +290,18 @@ Preparation prepare(const Arguments& arguments, Watch* watch) {
   return run;
 }
 
+/// All frames were through before.
+ExitCode end_at_once(const Preparation& run, RunLog& log) {
+  const ExitCode code = tell_past_failures(*run.checkpoints) ? kOk : kFramesFailed;
+  const std::vector<FrameReport> none;
+  log.end(RunOutcome{.job = run.job, .results = run.results, .reports = none}, code);
+  return code;
+}
+
 ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, Watch* watch = nullptr) {
   Preparation run = prepare(arguments, watch);
   run.checkpoints = prepare_checkpoints(arguments.checkpoint, arguments.sequence, run.job, run.options);
-  if (run.job.frames.empty()) return tell_past_failures(*run.checkpoints) ? kOk : kFramesFailed;
+  if (run.job.frames.empty()) return end_at_once(run, log);
   const SessionOptions& options = run.options;
   const int threads = options.threads > 0 ? options.threads : available_threads();
   const Window window = choose_window(run.job.plan, threads, options.frames_in_flight, options.memory);

@@ -16,13 +16,13 @@
 
 namespace quell {
 
-/// Keeps account of what is wanted, being read, and there. Only read() takes long, and needs no lock; all else wants one.
 /// The frames of a run.
 struct RunFrames {
   const std::vector<std::int64_t>& computed;
   const std::vector<std::int64_t>& later;  ///< see Session::run
 };
 
+/// Keeps account of what is wanted, being read, and there. Only read() takes long, and needs no lock; all else wants one.
 class InputReader {
  public:
   /// One input in one frame.

@@ -31,13 +31,13 @@ after(async () => {
 });
 
 /** A page whose complaints and requests are told at the end. */
-export async function open(file = "report.html", options = {}) {
+export async function open(file = "report.html", options = {}, timeout = 30_000) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 900 }, ...options });
   const troubles = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && troubles.push(message.text()));
   page.on("pageerror", (error) => troubles.push(error.message));
   page.on("request", (request) => /^(file|data|blob):/.test(request.url()) || troubles.push(`asks for ${request.url()}`));
-  await page.goto(pathToFileURL(join(folder, file)).href);
+  await page.goto(pathToFileURL(join(folder, file)).href, { timeout });
   await page.evaluate(() => window.reportReady());
   const ready = () => page.evaluate(() => window.reportReady());
   return {

@@ -1,28 +1,15 @@
 // A report of 24 frames of 1920 x 1080 stays responsive: every step of scrubbing and zooming is on the screen within 50 ms.
-//   node responsive.test.mjs QUELL
+//   node responsive.test.mjs QUELL SOURCE
 // Steps are told, and judged by their median: a machine that does other things at the same time must not fail it.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, mkdtempSync, rmSync, statSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { mkdirSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, test } from "node:test";
-import { pathToFileURL } from "node:url";
+import { test } from "node:test";
 import { writeExr } from "./exr.mjs";
+import { folder, open, run } from "./page.mjs";
 
 const kMost = 50; // ms
 const [width, height, count] = [1920, 1080, 24];
-const quell = process.argv[2];
-const browserFile = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
-const skip = (why) => {
-  console.log(`skipped: ${why}`);
-  process.exit(77);
-};
-if (!browserFile) skip("there is no chromium");
-const { chromium } = await import("playwright-core").catch(() => skip("playwright-core is not installed: npm ci in tests/apps/report"));
-
-const folder = mkdtempSync(join(tmpdir(), "quell-responsive-"));
-after(() => rmSync(folder, { recursive: true }));
 
 /** Uniform noise within 1/4 to 1, as its half floats' bits, the same in every run: nothing is easy to pack or to draw of it. */
 function makeNoise(seed) {
@@ -45,7 +32,7 @@ function writeReport() {
     writeExr(join(folder, `shot/color.${String(frame).padStart(4, "0")}.exr`), width, height, makeNoise(frame));
   const graph = { quell: 1, inputs: { color: "color" }, nodes: { blur: { pass: "gaussian", in: { image: "color" }, params: { sigma: 1 } } }, outputs: { color: "blur.image" } };
   writeFileSync(join(folder, "blur.json"), JSON.stringify(graph));
-  execFileSync(quell, ["report", "shot", "blur.json", "-o", "report.html", "-q"], { cwd: folder, stdio: ["ignore", "inherit", "pipe"] });
+  run("report", "shot", "blur.json", "-o", "report.html");
   console.log(`a report of ${(statSync(join(folder, "report.html")).size / 1e6).toFixed(0)} MB`);
 }
 
@@ -81,26 +68,13 @@ function judge(what, before, steps) {
 
 test("scrubbing and zooming 24 frames of 1920 x 1080", async () => {
   writeReport();
-  const browser = await chromium.launch({
-    executablePath: browserFile,
-    args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-  });
-  try {
-    const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
-    const troubles = [];
-    page.on("pageerror", (error) => troubles.push(error.message));
-    page.on("console", (message) => message.type() === "error" && troubles.push(message.text()));
-    await page.goto(pathToFileURL(join(folder, "report.html")).href, { timeout: 120_000 });
-    await page.evaluate(() => window.reportReady());
-    await page.waitForFunction(() => document.querySelector("canvas").dataset.prefetched, null, { timeout: 120_000 });
-    const frames = await measure(page, Array(count - 1).fill(","), "frame-text");
-    assert.deepEqual(frames.map((step) => step.frame), frames.map((step) => step.text), "another frame is drawn than told");
-    judge("scrubbing", String(count), frames);
-    const zoom = await page.textContent("#zoom-text");
-    const zoomed = await measure(page, ["+", "+", "+", "+", "+", "-", "-", "-", "-", "-"], "zoom-text");
-    judge("zooming", zoom, zoomed);
-    assert.deepEqual(troubles, []);
-  } finally {
-    await browser.close();
-  }
+  const { page, end } = await open("report.html", {}, 120_000);
+  await page.waitForFunction(() => document.querySelector("canvas").dataset.prefetched, null, { timeout: 120_000 });
+  const frames = await measure(page, Array(count - 1).fill(","), "frame-text");
+  assert.deepEqual(frames.map((step) => step.frame), frames.map((step) => step.text), "another frame is drawn than told");
+  judge("scrubbing", String(count), frames);
+  const zoom = await page.textContent("#zoom-text");
+  const zoomed = await measure(page, ["+", "+", "+", "+", "+", "-", "-", "-", "-", "-"], "zoom-text");
+  judge("zooming", zoom, zoomed);
+  await end();
 });

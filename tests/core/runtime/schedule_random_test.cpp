@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 #include "tests/core/runtime/schedule_naive.h"
@@ -39,15 +40,25 @@ std::vector<std::string> names(const Graph& graph) {
   return list;
 }
 
+std::vector<unsigned> seeds(int block) {
+  std::vector<unsigned> list(kGraphsPerBlock);
+  std::iota(list.begin(), list.end(), static_cast<unsigned>(block) * kGraphsPerBlock);
+  return list;
+}
+
+/// What every other way of running has to equal.
+Outcome run_alone(const std::shared_ptr<const Graph>& checked, const Scene& scene, const TestGraph& graph) {
+  return run(checked, graph.inputs, scene, with_dumps(serial(), graph));
+}
+
 class RandomGraphs : public testing::TestWithParam<int> {};
 
 TEST_P(RandomGraphs, YieldWhatTheirDefinitionSaysUnderEverySchedule) {
-  for (unsigned i = 0; i < kGraphsPerBlock; ++i) {
-    const unsigned seed = static_cast<unsigned>(GetParam()) * kGraphsPerBlock + i;
+  for (const unsigned seed : seeds(GetParam())) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const auto [scene, graph] = draw_case(seed);
     const auto checked = load(graph);
-    const Outcome want = run(checked, graph.inputs, scene, with_dumps(serial(), graph));
+    const Outcome want = run_alone(checked, scene, graph);
     expect_same(without_words(want), compute_naively(graph, scene, names(*checked)));
     for (unsigned k = 0; k < kSettingsPerGraph; ++k) {
       const Setting chosen = setting(static_cast<int>((seed + 5 * k) % kSettings));
@@ -64,12 +75,11 @@ TEST_P(RandomGraphs, YieldWhatTheirDefinitionSaysUnderEverySchedule) {
 }
 
 TEST_P(RandomGraphs, YieldTheSameWhereSessionsGoOnWithWhatOthersHaveSaved) {
-  for (unsigned i = 0; i < kGraphsPerBlock; ++i) {
-    const unsigned seed = static_cast<unsigned>(GetParam()) * kGraphsPerBlock + i;
+  for (const unsigned seed : seeds(GetParam())) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const auto [scene, graph] = draw_case(seed);
     const auto checked = load(graph);
-    const Outcome want = run(checked, graph.inputs, scene, with_dumps(serial(), graph));
+    const Outcome want = run_alone(checked, scene, graph);
     Dice dice(seed);
     std::set<std::int64_t> last_frames;
     for (const std::int64_t frame : scene.frames)
