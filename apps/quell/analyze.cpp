@@ -1,11 +1,5 @@
 #include "analyze.h"
 
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
 #include <iostream>
 #include <string>
 
@@ -13,36 +7,10 @@
 #include "interrupt.h"
 #include "quell/runtime/analysis.h"
 #include "quell/sequence/file_sink.h"
+#include "temporary_folder.h"
 
 namespace quell::app {
 namespace {
-
-namespace fs = std::filesystem;
-
-/// A folder of its own below TMPDIR (or /tmp), removed with all that is in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::error_code error;
-    std::string path = (fs::temp_directory_path(error) / "quell-analyze-XXXXXX").string();
-    if (error || !mkdtemp(path.data()))
-      throw Error(Fault::usage, "TMPDIR",
-                  "no temporary folder can be made: " + (error ? error.message() : std::strerror(errno)) +
-                      "; name a folder that can be written to");
-    path_ = path;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 FrameTimes measure_job(Job& job, int threads, Console& console) {
   const TemporaryFolder folder;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "console.h"
+#include "gaps.h"
 #include "quell/graph/graph.h"
 #include "quell/sequence/sequence.h"
 
@@ -37,6 +38,7 @@ struct SequenceArguments {
   std::filesystem::path sequence;  ///< empty when not given
   std::vector<std::string> in;
   std::optional<std::string> frames, window, crop;
+  OnMissing on_missing = OnMissing::usual;
 
   bool given() const { return !sequence.empty() || !in.empty(); }
 };

@@ -23,11 +23,21 @@ void require_done(const std::vector<std::int64_t>& wanted, const CheckpointManif
                   FrameRange(missing).text() + " are not done; leave them out of --frames, or begin anew without --resume");
 }
 
+/// Chunks that follow each other by checkpoints are one run, of which none may be left out.
+void require_neighbor(std::int64_t frame, const Job& job, const Surroundings& around) {
+  if (!around.last_of_chunk_before || frame >= *around.last_of_chunk_before) return;
+  throw Error(Fault::usage, "--resume",
+              "the checkpoint is of frame " + std::to_string(frame) + ", and the chunk begins with frame " +
+                  std::to_string(job.frames.front()) + "; compute the chunks between them first");
+}
+
 /// Takes the frames that are through out of the job's.
-void go_on(Checkpoints& checkpoints, Job& job) {
+void go_on(Checkpoints& checkpoints, Job& job, Surroundings& around) {
   checkpoints.before = checkpoints.folder.find();
   if (!checkpoints.before) return spdlog::info("there is no checkpoint in {} yet", checkpoints.folder.folder().string());
+  require_neighbor(checkpoints.before->frame, job, around);
   checkpoints.past = checkpoints.before->past;
+  around.history_only.clear();
   const auto first_left = std::ranges::upper_bound(job.frames, checkpoints.before->frame);
   require_done({job.frames.begin(), first_left}, *checkpoints.before);
   job.frames.erase(job.frames.begin(), first_left);
@@ -37,7 +47,7 @@ void go_on(Checkpoints& checkpoints, Job& job) {
 
 void add_to_past(PastFrames& past, const std::vector<FrameReport>& reports, std::int64_t last) {
   for (const FrameReport& report : reports)
-    if (report.frame <= last) (report.ok ? past.done : past.failed).push_back(report.frame);
+    if (report.frame <= last && !report.history_only) (report.ok ? past.done : past.failed).push_back(report.frame);
 }
 
 /// What the session has kept, if that is more than the last checkpoint has.
@@ -71,7 +81,7 @@ void add_options(CLI::App& app, CheckpointArguments& arguments) {
 }
 
 std::optional<Checkpoints> prepare_checkpoints(const CheckpointArguments& arguments, const SequenceArguments& sequence, Job& job,
-                                               const SessionOptions& options) {
+                                               Surroundings& around, const SessionOptions& options) {
   if (!arguments.folder) {
     if (arguments.resume) throw Error(Fault::usage, "--resume", "name the folder to go on from with --checkpoint FOLDER");
     if (arguments.every)
@@ -80,23 +90,26 @@ std::optional<Checkpoints> prepare_checkpoints(const CheckpointArguments& argume
   }
   const int every = arguments.every ? parse_count(*arguments.every, "--every", 1, kMostEvery) : kEvery;
   Checkpoints checkpoints{.folder = CheckpointFolder(*arguments.folder, traits_of(job, sequence, options)), .every = every};
-  if (arguments.resume) go_on(checkpoints, job);
+  if (arguments.resume) go_on(checkpoints, job, around);
   return checkpoints;
 }
 
-std::vector<FrameReport> run_with_checkpoints(Session& session, const Job& job, FrameSink& sink, Checkpoints& checkpoints,
-                                              const SessionOptions& options) {
+std::vector<FrameReport> run_with_checkpoints(Session& session, const Job& job, const Surroundings& around, FrameSink& sink,
+                                              Checkpoints& checkpoints, const SessionOptions& options) {
   if (checkpoints.before) session.restore(checkpoints.folder.read(*checkpoints.before, session.pool()));
   Executor executor(options.threads);
   std::vector<FrameReport> reports;
   for (auto begin = job.frames.begin(); begin != job.frames.end();) {
     const auto end = begin + std::min<std::ptrdiff_t>(checkpoints.every, job.frames.end() - begin);
-    const std::vector<std::int64_t> part(begin, end), later(end, job.frames.end());
-    std::vector<FrameReport> of_part = session.run(part, *job.sequence, sink, later);
+    std::vector<std::int64_t> part(begin, end);
+    if (begin == job.frames.begin()) part = join(around.history_only, part);
+    RunContext context = context_of(around);
+    context.later = join({end, job.frames.end()}, around.after);
+    std::vector<FrameReport> of_part = session.run(part, *job.source, sink, context);
     std::ranges::move(of_part, std::back_inserter(reports));
     // Where a failed frame ends the run, what went wrong is put right, and that frame is computed again.
     const auto failed = [](const FrameReport& report) { return !report.ok; };
-    if (options.stop_on_error && std::ranges::any_of(reports, failed)) break;
+    if (options.on_error == OnError::stop && std::ranges::any_of(reports, failed)) break;
     write_checkpoint(session, checkpoints, reports, executor);
     if (interrupted()) break;
     begin = end;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "checkpoint.h"
+#include "chunk.h"
 
 namespace CLI {
 class App;
@@ -30,14 +31,15 @@ struct Checkpoints {
   bool ok = true;                                 ///< whether all could be written
 };
 
-/// Nothing without --checkpoint. With --resume, takes the frames that are through out of the job's, which may leave none. Throws
-/// Error(usage) for options that do not go together, a checkpoint of another run, and frames before it that nobody computed.
+/// Nothing without --checkpoint. With --resume, takes the frames that are through out of the job's, which may leave none, and
+/// the pre-roll, which the history of the checkpoint makes needless, out of what is around. Throws Error(usage) for options that
+/// do not go together, a checkpoint of another run, or not of the frame before a chunk, and frames before it that nobody computed.
 std::optional<Checkpoints> prepare_checkpoints(const CheckpointArguments& arguments, const SequenceArguments& sequence, Job& job,
-                                               const SessionOptions& options);
+                                               Surroundings& around, const SessionOptions& options);
 
-/// As Session::run over the job's frames. A checkpoint that cannot be written is told, and the run goes on.
-std::vector<FrameReport> run_with_checkpoints(Session& session, const Job& job, FrameSink& sink, Checkpoints& checkpoints,
-                                              const SessionOptions& options);
+/// As Session::run over the pre-roll and the job's frames. A checkpoint that cannot be written is told, and the run goes on.
+std::vector<FrameReport> run_with_checkpoints(Session& session, const Job& job, const Surroundings& around, FrameSink& sink,
+                                              Checkpoints& checkpoints, const SessionOptions& options);
 
 /// Tells of frames that failed before the checkpoint; false when there are any.
 bool tell_past_failures(const Checkpoints& checkpoints);

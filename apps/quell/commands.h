@@ -23,6 +23,7 @@ Command add_compare(CLI::App& program);
 Command add_graph(CLI::App& program);
 Command add_inspect(CLI::App& program);
 Command add_passes(CLI::App& program);
+Command add_plan(CLI::App& program);
 Command add_report(CLI::App& program);
 Command add_schema(CLI::App& program);
 Command add_tune(CLI::App& program);

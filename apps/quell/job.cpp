@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "graph_files.h"
-#include "missing_files.h"
 #include "quell/text/diagnostic.h"
 
 namespace quell::app {
@@ -88,21 +87,11 @@ std::vector<InputFiles> select_inputs(const Plan& plan, const std::vector<InputF
   return selected;
 }
 
-std::vector<std::int64_t> choose_frames(const Sequence& sequence, const std::vector<InputFiles>& inputs,
-                                        const std::string& place) {
+ChosenFrames choose_frames(const Sequence& sequence, const std::vector<InputFiles>& inputs, OnMissing on_missing,
+                           const std::string& place) {
   std::vector<std::string> names;
   for (const InputFiles& files : inputs) names.push_back(files.input);
-  const std::vector<std::int64_t> frames = sequence.frames(names);
-  const std::vector<MissingFile> missing = sequence.missing(names);
-  const auto is_asked_for = [&](const MissingFile& file) { return std::binary_search(frames.begin(), frames.end(), file.frame); };
-  if (std::any_of(missing.begin(), missing.end(), is_asked_for))
-    throw Error(Fault::input, place, "files of the frames asked for are missing:" + list_missing(missing));
-  if (frames.empty())
-    throw Error(Fault::input, place,
-                "there is no frame for which every input exists" +
-                    (missing.empty() ? std::string() : "; missing are:" + list_missing(missing)));
-  warn_of_missing(missing);
-  return frames;
+  return app::choose_frames(sequence, names, on_missing, place);
 }
 
 void tell_choice(const Job& job) {
@@ -149,7 +138,12 @@ Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arg
   require_inputs(*graph, found, *job.sequence, place);
   job.plan = make_plan(graph, shapes_of(*graph, *job.sequence), dumps);
   job.inputs = select_inputs(job.plan, found);
-  job.frames = choose_frames(*job.sequence, job.inputs, place);
+  ChosenFrames chosen = choose_frames(*job.sequence, job.inputs, arguments.on_missing, place);
+  job.frames = std::move(chosen.frames), job.cuts = std::move(chosen.cuts);
+  if (chosen.holds.empty())
+    job.source = job.sequence;
+  else
+    job.source = std::make_shared<HoldingSource>(job.sequence, std::move(chosen.holds));
   tell_choice(job);
   tell_new_warnings(job);
   return job;

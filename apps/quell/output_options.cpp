@@ -116,10 +116,10 @@ FileSinkOptions parse_output(const OutputArguments& arguments) {
   return options;
 }
 
-void complete_output(FileSinkOptions& options, const OutputArguments& arguments, const Job& job) {
+void complete_output(FileSinkOptions& options, const OutputArguments& arguments, const Job& job, const std::string& inputs) {
   if (arguments.padding.empty()) options.padding = job.sequence->padding();
   options.attributes = {
-      {"Software", std::string("quell ") + QUELL_VERSION}, {"quell:version", QUELL_VERSION}, {"quell:graph", job.graph->name}};
+      {"Software", std::string("quell ") + QUELL_VERSION}, {"quell:version", QUELL_VERSION}, {"quell:graph", job.graph->name}, {"quell:inputs", inputs}};
   const auto hash_of = [&](const std::map<std::string, Endpoint>& results) {
     return FileAttribute{"quell:graph_hash", graph_hash(*job.graph, results)};
   };

@@ -34,7 +34,8 @@ FileSinkOptions parse_output(const OutputArguments& arguments);
 /// Adds what only the job knows: its images, what their files tell of the run, the files of the picture, and, without --padding,
 /// the digits. Throws Error(usage) when images cannot be layers of one file, or channels cannot be kept. The options may be used
 /// as long as the job's sequence lives.
-void complete_output(FileSinkOptions& options, const OutputArguments& arguments, const Job& job);
+/// `inputs` is what files tell of what they were made of (see describe_inputs()).
+void complete_output(FileSinkOptions& options, const OutputArguments& arguments, const Job& job, const std::string& inputs);
 
 /// What the files of each image hold beside its values, and how they are called, in one text: while it stays, and the values do,
 /// the files do. For complete options.

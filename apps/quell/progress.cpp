@@ -80,7 +80,8 @@ void Progress::frame_done(const FrameReport& report, std::size_t bytes, const st
   state_.frame = report.frame;
   state_.bytes = bytes;
   if (!report.ok)
-    spdlog::error("frame {} ({} of {}) failed: {}", report.frame, state_.done, state_.total, report.error);
+    spdlog::error("frame {}{} ({} of {}) failed: {}", report.frame, report.history_only ? ", of the pre-roll," : "", state_.done,
+                  state_.total, report.error);
   else if (!console_.is_terminal() || !figures.empty())
     spdlog::info(plain_line(report.frame, state_.done, state_.total, report.seconds) + figures);
   draw();

@@ -97,11 +97,15 @@ void prepare_folder(const fs::path& folder, const char* option) {
     throw Error(Fault::usage, option, "nothing can be written to " + folder.string() + ": " + std::strerror(errno));
 }
 
-std::string describe_dry_run(const Job& job, const std::vector<ResultFiles>& results, const std::string& more) {
+std::string describe_dry_run(const Job& job, const std::vector<ResultFiles>& results, const Surroundings& around,
+                             const std::string& more) {
   std::size_t width = 0;
   for (const InputFiles& input : job.inputs) width = std::max(width, input.input.size());
   std::string text = "would read, for frames " + FrameRange(job.frames).text() + ":\n";
   for (const InputFiles& input : job.inputs) text += pad(input.input, width) + input.pattern + "\n";
+  if (!around.history_only.empty())
+    text += "would compute for their history alone: frames " + FrameRange(around.history_only).text() +
+            (around.reason.empty() ? "" : " (" + around.reason + ")") + "\n";
   text += "would run:\n" + describe(job.plan);
   text += "would write:\n";
   std::size_t replaced = 0;

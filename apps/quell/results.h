@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "chunk.h"
 #include "job.h"
 #include "quell/sequence/file_sink.h"
 
@@ -32,7 +33,8 @@ void refuse_to_replace_others(const std::filesystem::path& file, std::string_vie
 /// Makes the folder. Throws Error(usage) naming the option when that fails, or when nothing can be written there.
 void prepare_folder(const std::filesystem::path& folder, const char* option = "--out");
 
-/// What would be read, run and written; `more` is a line about something else.
-std::string describe_dry_run(const Job& job, const std::vector<ResultFiles>& results, const std::string& more = "");
+/// What would be read, run and written; `more` are lines about something else.
+std::string describe_dry_run(const Job& job, const std::vector<ResultFiles>& results, const Surroundings& around,
+                             const std::string& more = "");
 
 }  // namespace quell::app

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "json_lines.h"
+#include "run_options.h"
 #include "quell/graph/graph_hash.h"
 #include "quell/sdk/abi.h"
 #include "quell/simd/isa.h"
@@ -106,7 +107,7 @@ void RunLog::start(const Job& job, const std::vector<ResultFiles>& results, cons
       .text("isa", current_isa())
       .number("frames_in_flight", window.frames)
       .number("memory_limit", window.memory)
-      .text("on_error", options.stop_on_error ? "stop" : "continue");
+      .text("on_error", name_of(options.on_error));
   if (!options.cuts.empty()) start.text("cuts", range(options.cuts));
   state_->lines.write("start", start);
 }
@@ -123,6 +124,7 @@ void RunLog::frame(const FrameReport& report, const Plan& plan, const BufferPool
     replaced.push_back(JsonObject().text("input", values.input).text("type", name(values.type)).number("count", values.count));
   JsonObject line;
   line.number("frame", report.frame).flag("ok", report.ok);
+  if (report.history_only) line.flag("history_only", true);
   if (!report.ok) line.text("error", report.error).text("node", report.node);
   line.seconds("seconds", report.seconds)
       .seconds("read_seconds", report.read_seconds)

@@ -16,6 +16,9 @@ constexpr int kMostThreads = 1024;
 constexpr int kMostFrames = 1024;
 constexpr std::string_view kUnits = "KMGT";
 
+// In the order of OnError.
+const std::vector<std::string> kOnError = {"continue", "stop", "reset", "hold"};
+
 int parse_frames_in_flight(const std::string& text, bool serial) {
   const int frames = text == "auto" ? 0 : parse_count(text, "--frames-in-flight", 1, kMostFrames, ", or 'auto'");
   if (frames > 1 && serial)
@@ -25,6 +28,8 @@ int parse_frames_in_flight(const std::string& text, bool serial) {
 }
 
 }  // namespace
+
+std::string_view name_of(OnError on_error) { return kOnError[static_cast<std::size_t>(on_error)]; }
 
 std::size_t parse_memory(const std::string& text) {
   constexpr double kMost = 1e18;
@@ -56,7 +61,7 @@ SessionOptions parse_schedule(const ScheduleArguments& arguments) {
   options.schedule = serial ? Schedule::serial : Schedule::concurrent;
   options.frames_in_flight = parse_frames_in_flight(arguments.frames_in_flight, serial);
   options.memory = parse_memory(arguments.memory);
-  options.stop_on_error = parse_choice(arguments.on_error, "--on-error", {"continue", "stop"}) == 1;
+  options.on_error = static_cast<OnError>(parse_choice(arguments.on_error, "--on-error", kOnError));
   if (!arguments.cut.empty()) options.cuts = FrameRange::parse(arguments.cut, "--cut").frames();
   return options;
 }
@@ -70,13 +75,14 @@ void add_options(CLI::App& app, ScheduleArguments& arguments) {
            "make useful.")
       ->group(kScheduleGroup);
   add_text(app, "--memory", arguments.memory, "SIZE",
-           "Most memory for images: bytes, or with K, M, G or T, such as 512M or 1.5G; auto, the default, for half of what there "
-           "is.")
+           "Most resident memory: bytes, or with K, M, G or T, such as 512M or 1.5G. A run that cannot keep within it does not "
+           "start, and tells how much it needs. auto, the default, is half of what there is, for images.")
       ->group(kScheduleGroup);
   add_text(app, "--executor", arguments.executor, "NAME",
            "tbb, the default, or serial: one node after the other, for comparison. The results are the same.")
       ->group(kScheduleGroup);
-  add_text(app, "--on-error", arguments.on_error, "WHAT", "When a frame fails: continue, the default, with the others, or stop.")
+  add_text(app, "--on-error", arguments.on_error, "WHAT", "When a frame fails: continue, the default, with the others; stop; or continue, where it could not be computed, with the "
+           "history ended (reset) or that of the frame before (hold).")
       ->group(kScheduleGroup);
   add_text(app, "--cut", arguments.cut, "FRAMES",
            "Frames with which a new shot begins, such as 101,240: nothing of the frames before them is used from there on.")

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "quell/runtime/session.h"
 
@@ -25,6 +26,9 @@ void add_options(CLI::App& app, ScheduleArguments& arguments);
 
 /// The session's options that these arguments state. Throws Error(usage) naming the option.
 SessionOptions parse_schedule(const ScheduleArguments& arguments);
+
+/// As --on-error has it.
+std::string_view name_of(OnError on_error);
 
 /// Bytes: "1000000", "512M", "1.5G" (powers of 1024); 0 for "auto". Throws Error(usage) naming --memory.
 std::size_t parse_memory(const std::string& text);

@@ -60,7 +60,7 @@ Trials::Trials(const Job& job, MeasuringOptions options, SessionOptions session)
     options_.outputs = {first->name};
   }
   session_.cancelled = interrupted;
-  session_.stop_on_error = true;
+  session_.on_error = OnError::stop;
 }
 
 std::vector<Figures> Trials::run(const std::shared_ptr<const Graph>& graph, const std::vector<std::vector<std::int64_t>>& sets) {

@@ -20,7 +20,7 @@ set(public_headers
   text/error.h text/diagnostic.h text/json.h text/json_write.h
   image/port_type.h image/buffer_pool.h image/image.h image/item.h image/stream.h
   plugin/registry.h plugin/pass_instance.h
-  graph/graph.h graph/graph_hash.h graph/plan.h graph/plan_dot.h graph/schema.h graph/slowest_cycles.h
+  graph/graph.h graph/graph_hash.h graph/plan.h graph/plan_dot.h graph/preroll.h graph/schema.h graph/slowest_cycles.h
   runtime/analysis.h runtime/executor.h runtime/function_ref.h runtime/host.h runtime/rerun.h runtime/sanitize.h runtime/saved_history.h runtime/session.h
   runtime/thread_budget.h runtime/trace.h runtime/window.h
   sequence/sequence.h sequence/frame_range.h sequence/file_sink.h sequence/image_file.h sequence/image_input.h

@@ -22,6 +22,8 @@ struct PlannedNode {
   std::size_t scratch_bytes = 0;
   std::size_t slot_scratch_bytes = 0;
   bool by_rows = false;             ///< it may be run on some rows at a time
+  double kept = 1;                  ///< share of its history that a frame leaves, at most
+  int settles = 0;                  ///< frames until what it counts is the same, whatever it was
   std::vector<Endpoint> last_uses;  ///< same-frame values that nobody needs after this node; of fused nodes the last one has all
 };
 

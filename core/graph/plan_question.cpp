@@ -85,6 +85,9 @@ void check_answer(const Node& node, const PortShapes& inputs, const PortShapes& 
       for (const Shape& shape : port)
         if (shape.present && !is_image(shape.type)) refuse("it works row by row, but yields what is not an image");
   }
+  if (!(answer.kept >= 0 && answer.kept <= 1) || answer.settles < 0)
+    refuse("it keeps " + std::to_string(answer.kept) + " of its history, and settles after " + std::to_string(answer.settles) +
+           " frames; possible are 0 to 1, and 0 or more");
   if (answer.scratch_bytes > Image::kMaxBytes || answer.slot_scratch_bytes > Image::kMaxBytes)
     refuse("it asks for more than 1 TiB of scratch memory");
 }
@@ -107,12 +110,16 @@ PlannedNode ask_pass(const Graph& graph, int index, const PortShapes& inputs, co
                             answer.in_place_of.data(),
                             0,
                             0,
-                            0};
+                            0,
+                            answer.kept,
+                            answer.settles};
   node.instance->infer(inference);
   answer.outputs = raw_outputs.shapes();
   answer.scratch_bytes = inference.scratch_bytes;
   answer.slot_scratch_bytes = inference.slot_scratch_bytes;
   answer.by_rows = inference.by_rows != 0;
+  answer.kept = inference.kept;
+  answer.settles = inference.settles;
   check_answer(node, inputs, outputs, answer);
   return answer;
 }

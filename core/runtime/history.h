@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -57,6 +58,20 @@ class History {
     for (Line& line : lines_)
       line.items.erase(line.items.begin(), std::ranges::upper_bound(line.items, frame - line.reach, {}, &Kept::first));
     for (Frames& frames : resets_) frames.erase(frames.begin(), std::ranges::upper_bound(frames, frame - longest_));
+  }
+  /// Lets go of everything.
+  void clear() {
+    for (Line& line : lines_) line.items.clear();
+    for (Frames& frames : resets_) frames.clear();
+  }
+  /// Puts what the latest frame before `frame` has left in place of what this one has.
+  void hold(std::int64_t frame) {
+    for (Line& line : lines_) {
+      const auto own = std::ranges::lower_bound(line.items, frame, {}, &Kept::first);
+      Item before = own == line.items.begin() ? Item() : std::prev(own)->second;
+      const auto place = own != line.items.end() && own->first == frame ? line.items.erase(own) : own;
+      if (before) line.items.insert(place, {frame, std::move(before)});
+    }
   }
   /// Lets go of `frame` and all after it, which will be computed again, or were not finished.
   void forget_from(std::int64_t frame) {

@@ -2,6 +2,7 @@
 // look ahead at the inputs of later ones.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -19,7 +20,10 @@ namespace quell {
 /// The frames of a run.
 struct RunFrames {
   const std::vector<std::int64_t>& computed;
-  const std::vector<std::int64_t>& later;  ///< see Session::run
+  const RunContext& context;
+
+  /// Of which nothing but the history is wanted.
+  bool is_history_only(std::int64_t frame) const { return std::ranges::binary_search(context.history_only, frame); }
 };
 
 /// Keeps account of what is wanted, being read, and there. Only read() takes long, and needs no lock; all else wants one.
@@ -39,7 +43,7 @@ class InputReader {
   };
   InputReader(const Graph& graph, FrameSource& source, const RunFrames& frames, BufferPool& pool, Trace* trace)
       : graph_(graph), source_(source), frames_(frames.computed.begin(), frames.computed.end()), pool_(pool), trace_(trace) {
-    frames_.insert(frames.later.begin(), frames.later.end());
+    frames_.insert(frames.context.later.begin(), frames.context.later.end());
   }
 
   /// From now on next() names what the frame needs and nobody has asked for yet.
@@ -73,7 +77,7 @@ class InputReader {
 
   const Graph& graph_;
   FrameSource& source_;
-  std::set<std::int64_t> frames_;
+  std::set<std::int64_t> frames_;  // that there are
   BufferPool& pool_;
   Trace* trace_;
   std::set<Key> queue_;                       // wanted, and not yet being read

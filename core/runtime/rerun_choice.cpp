@@ -65,7 +65,7 @@ RerunTurn::RerunTurn(RerunState& state, std::shared_ptr<const Graph> graph, cons
       shapes_(shapes_of(*graph_, source)),
       plan_(make_plan(graph_, shapes_, state.options.dumps)) {
   for (const Node& node : graph_->nodes) stamps_[node.name] = stamp_files(node);
-  limit_ = choose_window(plan_, threads(), s_.options.frames_in_flight, s_.options.memory).memory;
+  limit_ = choose_window(plan_, threads(), s_.options.frames_in_flight, s_.options.memory, s_.options.reserved).memory;
 }
 
 void RerunTurn::start_anew(const std::string& why) {

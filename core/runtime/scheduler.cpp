@@ -20,6 +20,7 @@ int file_threads(std::uint32_t threads) { return std::min(static_cast<int>(threa
 
 Scheduler::Scheduler(SessionState& session, const RunFrames& frames, FrameSource& source, FrameSink& sink)
     : session_(session),
+      run_(frames),
       frames_(frames.computed),
       source_(source),
       sink_(sink),
@@ -142,7 +143,7 @@ void Scheduler::compute_nodes(Lock& lock) {
 
 void Scheduler::compute(const FrameStep& node, Lock& lock) {
   Lane& at = lane(node.index);
-  if (node.index >= end_ || at.is_lost(node.step)) {
+  if (node.index >= end_ || !is_wanted(node) || at.is_lost(node.step)) {
     at.skip(node.step);
   } else {
     at.fetch(node.step);
@@ -193,7 +194,7 @@ std::optional<std::size_t> Scheduler::next_write() {
   if (stopped_) return std::nullopt;
   for (std::size_t index = flight_.retired(); index < std::min(flight_.begun(), end_); ++index) {
     if (frame(index).phase == Phase::computed) return index;
-    if (session_.options.stop_on_error) break;  // an earlier one may still fail
+    if (session_.ends_with_failure()) break;  // an earlier one may still fail
   }
   return std::nullopt;
 }
@@ -235,6 +236,7 @@ bool Scheduler::admit_next() {
   flight_.admit();
   frame(index) = {Phase::reading, {}, Trace::Clock::now()};
   frame(index).report.frame = frames_[index];
+  frame(index).report.history_only = run_.is_history_only(frames_[index]);
   reader_.want(frames_[index], *session_.running);
   return true;
 }
@@ -252,7 +254,7 @@ bool Scheduler::begin_next() {
     }
   }
   FrameReport& report = frame(index).report;
-  report.ok = report.error.empty();
+  report.ok = report.computed = report.error.empty();
   FrameInputs inputs = reader_.take(report, *session_.running);
   if (report.ok) lane(index).begin(frames_[index], std::move(inputs));
   flight_.begin(report.ok);
@@ -290,7 +292,7 @@ void Scheduler::end_computation(std::size_t index) {
   frame(index).phase = Phase::computed;
   lane(index).drop_ahead();
   report_nodes(frame(index).report, lane(index));
-  if (frame(index).report.ok)
+  if (frame(index).report.ok && !frame(index).report.history_only)
     flight_.hold(index, true);
   else
     end_frame(index);
@@ -300,7 +302,7 @@ void Scheduler::end_frame(std::size_t index) {
   Frame& ended = frame(index);
   ended.phase = Phase::ended;
   ended.report.seconds = std::chrono::duration<double>(Trace::Clock::now() - ended.start).count();
-  if (!ended.report.ok && session_.options.stop_on_error) end_ = std::min(end_, index + 1);
+  if (!ended.report.ok && session_.ends_with_failure()) end_ = std::min(end_, index + 1);
   lane(index).clear();
   flight_.hold(index, false);
 }
@@ -314,7 +316,7 @@ void Scheduler::fail(Lock& lock) {
 bool Scheduler::retire_next() {
   const std::size_t index = flight_.retired();
   if (index >= std::min(flight_.begun(), end_) || frame(index).phase != Phase::ended) return false;
-  session_.finish(frames_[index]);
+  session_.finish(frame(index).report);
   reports_.push_back(std::move(frame(index).report));
   flight_.retire();
   return true;

@@ -66,10 +66,14 @@ class Scheduler {
   void end_frame(std::size_t index);
   void fail(Lock& lock);
   bool is_finished() const;
+  bool is_wanted(const FrameStep& node) {
+    return !frame(node.index).report.history_only || session_.running->wiring.feeds_history[static_cast<std::size_t>(node.step)];
+  }
   Frame& frame(std::size_t index) { return in_flight_[flight_.place(index)]; }
   Lane& lane(std::size_t index) { return session_.lane(flight_.place(index)); }
 
   SessionState& session_;
+  const RunFrames run_;
   const std::vector<std::int64_t>& frames_;
   FrameSource& source_;
   FrameSink& sink_;

@@ -12,20 +12,24 @@ namespace {
 class SerialRun {
  public:
   SerialRun(SessionState& session, const RunFrames& frames, FrameSource& source, FrameSink& sink)
-      : session_(session), reader_(*session.graph, source, frames, session.pool, session.options.trace), sink_(sink) {}
+      : session_(session),
+        run_(frames),
+        reader_(*session.graph, source, frames, session.pool, session.options.trace),
+        sink_(sink) {}
 
   FrameReport run(std::int64_t frame) {
     FrameReport report;
     report.frame = frame;
+    report.history_only = run_.is_history_only(frame);
     const auto start = Trace::Clock::now();
     try {
       read(frame);
       report.error = reader_.error(frame);
     } catch (...) { report.error = what_failed(session_.pool); }
-    report.ok = report.error.empty();
+    report.ok = report.computed = report.error.empty();
     FrameInputs inputs = reader_.take(report, *session_.running);
     if (report.ok) compute(report, std::move(inputs));
-    session_.finish(frame);
+    session_.finish(report);
     report.seconds = std::chrono::duration<double>(Trace::Clock::now() - start).count();
     return report;
   }
@@ -44,13 +48,15 @@ class SerialRun {
   void compute(FrameReport& report, FrameInputs inputs) {
     Lane& lane = session_.lane(0);
     lane.begin(report.frame, std::move(inputs));
-    compute_steps(lane, *session_.running);
+    compute_steps(lane, *session_.running, report.history_only);
     report_nodes(report, lane);
-    if (report.ok) write_results(report, lane, session_.running->wiring, sink_, session_.pool, session_.options.trace);
+    if (report.ok && !report.history_only)
+      write_results(report, lane, session_.running->wiring, sink_, session_.pool, session_.options.trace);
     lane.clear();
   }
 
   SessionState& session_;
+  RunFrames run_;
   InputReader reader_;
   FrameSink& sink_;
 };
@@ -70,7 +76,7 @@ std::vector<FrameReport> run_serially(SessionState& session, const RunFrames& fr
       break;
     }
     if (session.options.on_frame) session.options.on_frame(reports.back());
-    if (session.options.stop_on_error && !reports.back().ok) break;
+    if (session.ends_with_failure() && !reports.back().ok) break;
   }
   return reports;
 }

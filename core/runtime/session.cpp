@@ -1,6 +1,7 @@
 #include "quell/runtime/session.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "quell/runtime/scheduler.h"
@@ -34,6 +35,11 @@ InputShapes shapes_of(const Graph& graph, const std::vector<Item>& items) {
   return shapes;
 }
 
+std::vector<FrameReport> run_through(SessionState& session, const RunFrames& frames, FrameSource& source, FrameSink& sink) {
+  if (session.options.schedule == Schedule::serial) return run_serially(session, frames, source, sink);
+  return Scheduler(session, frames, source, sink).run();
+}
+
 // Frames tell their sizes themselves. A plan for the usual size would end the history of frames that have another one.
 bool are_same_there(const InputShapes& a, const InputShapes& b) {
   const auto same = [](const auto& x, const auto& y) {
@@ -53,7 +59,7 @@ const Plan* Session::plan() const { return state_->running ? &state_->running->p
 BufferPool& Session::pool() { return state_->pool; }
 
 std::vector<FrameReport> Session::run(const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink,
-                                      const std::vector<std::int64_t>& later) {
+                                      const RunContext& context) {
   SessionState& s = *state_;
   require_ascending(*s.graph, frames);
   InputShapes offered;
@@ -61,9 +67,16 @@ std::vector<FrameReport> Session::run(const std::vector<std::int64_t>& frames, F
   if (!s.running || !are_same_there(offered, s.planned_for)) s.plan_for(offered);
   if (frames.empty()) return {};
   s.running->history.forget_from(frames.front());  // left from an earlier time that these frames were computed
-  const RunFrames wanted{frames, later};
-  if (s.options.schedule == Schedule::serial) return run_serially(s, wanted, source, sink);
-  return Scheduler(s, wanted, source, sink).run();
+  std::vector<FrameReport> reports = run_through(s, {frames, context}, source, sink);
+  if (s.options.on_error == OnError::go_on || s.options.on_error == OnError::stop) return reports;
+  // The history of a frame that failed is put right before the next one begins.
+  std::vector<std::int64_t> left = frames;
+  while (!reports.empty() && !reports.back().ok && reports.back().frame != frames.back() && !s.cancelled()) {
+    left.erase(left.begin(), std::ranges::upper_bound(left, reports.back().frame));
+    std::vector<FrameReport> more = run_through(s, {left, context}, source, sink);
+    std::ranges::move(more, std::back_inserter(reports));
+  }
+  return reports;
 }
 
 std::map<std::string, Item> Session::push(std::int64_t frame, const std::map<std::string, Item>& inputs) {

@@ -22,6 +22,8 @@ namespace quell {
 struct FrameReport {
   std::int64_t frame = 0;
   bool ok = true;
+  bool history_only = false;             ///< see RunContext
+  bool computed = true;                  ///< false when it could not be read, or a node failed; it may fail to be written, too
   std::string error;                     ///< where and why, when it failed
   std::string node;                      ///< the node that failed; empty when the frame could not be read or written
   std::vector<ReplacedValues> replaced;  ///< of each input that had such values
@@ -37,12 +39,21 @@ enum class Schedule {
   serial,      ///< one node after the other, each parallel inside: the reference that the other must equal bit for bit
 };
 
+/// What happens when a frame fails.
+enum class OnError {
+  go_on,  ///< what the frame lacks counts as absent for those that look back at it
+  stop,   ///< no frame after it is computed
+  reset,  ///< where it could not be computed, all history ends with it, as at a cut
+  hold,   ///< where it could not be computed, the history of the frame before stands in for all of its own
+};
+
 struct SessionOptions {
   int threads = 0;  ///< that compute, decode and encode at a time; 0: as many as this process may use
   Schedule schedule = Schedule::concurrent;
-  int frames_in_flight = 0;    ///< most frames at a time, from reading to writing; 0: see choose_window()
-  std::size_t memory = 0;      ///< most bytes that the pool may hold; 0: half of what this process may have
-  bool stop_on_error = false;  ///< no frame after one that failed is handed out
+  int frames_in_flight = 0;  ///< most frames at a time, from reading to writing; 0: see choose_window()
+  std::size_t memory = 0;    ///< most bytes for images and what is reserved; 0: half of what this process may have
+  std::size_t reserved = 0;  ///< of `memory`, where that is given: what this process needs beside the images of the pool
+  OnError on_error = OnError::go_on;
   /// Frames before which all history ends, as at a cut of the film: no edge reaches from one side to the other, whatever its
   /// delay, and an edge that would yields its initial value. In any order.
   std::vector<std::int64_t> cuts = {};
@@ -52,6 +63,15 @@ struct SessionOptions {
   std::function<void(const FrameReport&)> on_frame = {};  ///< after each frame of run(), in order, on the caller's thread
   Trace* trace = nullptr;                                 ///< told what ran when; may be null
   bool fuse = true;  ///< nodes that work row by row run together where that saves memory traffic; the results are the same
+};
+
+/// What Session::run() has to know beside its frames.
+struct RunContext {
+  /// Frames that another run will compute. Edges that look ahead see them; without, they end with the last frame.
+  std::vector<std::int64_t> later = {};
+  /// Of the frames of the run, in ascending order, those of which nothing but the history is wanted: they are read, but not
+  /// handed out, and nodes that no history needs are left out.
+  std::vector<std::int64_t> history_only = {};
 };
 
 struct SessionState;
@@ -65,13 +85,12 @@ class Session {
 
   /// Computes the frames, whose numbers ascend. A frame that cannot be read, computed or written is reported and harms no other:
   /// what its nodes yielded is history for those that follow, what a failed node, or one that needs it, should have yielded
-  /// counts as absent. Returns a report for each frame, in order; when stopped, up to the one that failed; when cancelled, for
-  /// those that were finished, which may leave gaps. Not from within a oneTBB task, whose threads it waits for. Throws
-  /// Error(usage) when the graph cannot run on what the source has or the numbers do not ascend, Error(memory) when not even one
-  /// frame fits the limit.
-  /// `later`: frames that another run will compute. Edges that look ahead see them; without, they end with the last frame.
+  /// counts as absent, unless OnError says otherwise. Returns a report for each frame, in order; when stopped, up to the one that
+  /// failed; when cancelled, for those that were finished, which may leave gaps. Not from within a oneTBB task, whose threads it
+  /// waits for. Throws Error(usage) when the graph cannot run on what the source has or the numbers do not ascend, Error(memory)
+  /// when not even one frame fits the limit.
   std::vector<FrameReport> run(const std::vector<std::int64_t>& frames, FrameSource& source, FrameSink& sink,
-                               const std::vector<std::int64_t>& later = {});
+                               const RunContext& context = {});
 
   /// In memory: computes one frame from its inputs by name, and returns the outputs and dumps by name. Throws Error(usage) when
   /// the inputs do not fit the graph, Error(frame) when a pass fails, Cancelled when cancelled. Inputs that look ahead need

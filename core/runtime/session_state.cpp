@@ -33,7 +33,8 @@ bool SessionState::needs_plan(const InputShapes& shapes) const {
 void SessionState::plan_for(const InputShapes& shapes) {
   if (!needs_plan(shapes)) return;
   Plan plan = make_plan(graph, shapes, options.dumps, options.fuse);
-  const Window chosen = choose_window(plan, static_cast<int>(executor.slots()), options.frames_in_flight, options.memory);
+  const Window chosen =
+      choose_window(plan, static_cast<int>(executor.slots()), options.frames_in_flight, options.memory, options.reserved);
   auto next = std::make_unique<PlanState>(std::move(plan), chosen.frames, pool, options.cuts);
   if (running && options.log) options.log(QUELL_LOG_INFO, "the size of the inputs changed: history starts anew");
   pool.set_limit(chosen.memory);
@@ -45,9 +46,11 @@ void SessionState::plan_for(const InputShapes& shapes) {
   pool.trim();  // blocks of the former sizes would hardly be asked for again
 }
 
-void SessionState::finish(std::int64_t frame) {
-  running->history.advance(frame);
-  finished = frame;
+void SessionState::finish(const FrameReport& report) {
+  if (!report.computed && options.on_error == OnError::reset) running->history.clear();
+  if (!report.computed && options.on_error == OnError::hold) running->history.hold(report.frame);
+  running->history.advance(report.frame);
+  finished = report.frame;
 }
 
 Lane& SessionState::lane(std::size_t index) {
@@ -59,7 +62,7 @@ void report_nodes(FrameReport& report, const Lane& lane) {
   report.node_seconds = lane.node_seconds();
   const int failed = lane.failed_node();
   if (failed < 0) return;
-  report.ok = false;
+  report.ok = report.computed = false;
   report.node = lane.name(failed);
   report.error = lane.error();
 }

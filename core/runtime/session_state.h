@@ -28,8 +28,11 @@ struct SessionState {
   bool cancelled() const { return options.cancelled && options.cancelled(); }
   /// Whether inputs of these shapes need another plan.
   bool needs_plan(const InputShapes& shapes) const;
-  /// Lets go of what frames after this one, which is through as all before it are, cannot reach.
-  void finish(std::int64_t frame);
+  /// Of a frame that is through, as all before it are: does to the history what OnError says, and lets go of what later frames
+  /// cannot reach.
+  void finish(const FrameReport& report);
+  /// Whether no frame after one that failed may be begun before its history is put right.
+  bool ends_with_failure() const { return options.on_error != OnError::go_on; }
   /// Makes another plan when needed, before which nothing may be left running. A new size or a missing input is a new plan, and
   /// nothing older can be compared with it: history starts anew. Throws what make_plan and choose_window throw; the former plan
   /// then stays.

@@ -2,9 +2,10 @@
 
 namespace quell {
 
-void compute_steps(Lane& lane, const PlanState& state) {
+void compute_steps(Lane& lane, const PlanState& state, bool history_only) {
   for (int step = 0; step < static_cast<int>(state.wiring.steps.size()); ++step) {
-    if (lane.is_lost(step)) {
+    const bool is_wanted = !history_only || state.wiring.feeds_history[static_cast<std::size_t>(step)];
+    if (!is_wanted || lane.is_lost(step)) {
       lane.skip(step);
       continue;
     }

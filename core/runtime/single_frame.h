@@ -10,8 +10,8 @@
 
 namespace quell {
 
-/// Runs every step of a frame that has begun, in the plan's order. Throws Cancelled.
-void compute_steps(Lane& lane, const PlanState& state);
+/// Runs every step of a frame that has begun, or those that its history needs, in the plan's order. Throws Cancelled.
+void compute_steps(Lane& lane, const PlanState& state, bool history_only = false);
 
 /// Computes a frame from its inputs, one item for each of the graph's (nothing where it is absent), and returns what
 /// Plan::results() names. What is left from an earlier time that this frame, or one after it, was computed, is void. Throws

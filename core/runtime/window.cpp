@@ -60,7 +60,7 @@ std::size_t available_memory() {
   }
 }
 
-Window choose_window(const Plan& plan, int threads, int frames, std::size_t memory) {
+Window choose_window(const Plan& plan, int threads, int frames, std::size_t memory, std::size_t reserved) {
   Window window;
   for (std::size_t step = 0; step < plan.turns.size(); ++step) {
     const std::size_t alive = plan.alive_bytes[static_cast<std::size_t>(plan.turns[step].nodes.front())];
@@ -75,12 +75,15 @@ Window choose_window(const Plan& plan, int threads, int frames, std::size_t memo
   const std::size_t least = add(window.fixed_bytes, window.bytes_per_frame);
   const std::size_t available = available_memory();
   // Half leaves room for the files' codecs and for others; a graph that needs more than that gets it.
-  window.memory = memory > 0 ? memory : std::max(available / 2, std::min(least, available));
+  if (memory == 0) reserved = 0;
+  window.memory = memory > 0 ? memory - std::min(memory, reserved) : std::max(available / 2, std::min(least, available));
   if (least > window.memory)
     throw Error(Fault::memory, plan.graph->name,
                 "a frame takes " + mebibytes(window.bytes_per_frame) + " and history " + mebibytes(window.fixed_bytes) +
-                    ", so at least " + mebibytes(least) + " are needed; " +
-                    (memory > 0 ? "the limit is " : "this process may have ") + mebibytes(window.memory));
+                    (reserved > 0 ? ", the program and its files " + mebibytes(reserved) : "") + ", so at least " +
+                    mebibytes(add(least, reserved)) + " are needed; " +
+                    (memory > 0 ? "the limit is " : "this process may have ") +
+                    mebibytes(add(window.memory, std::min(memory, reserved))));
 
   const int within = frames_within_loops(plan);
   if (frames > 0) {

@@ -23,7 +23,8 @@ struct Window {
   std::string reason;               ///< what decided: "as asked for", "2 threads", "what the memory limit has room for"
 };
 
-/// `frames` and `memory` as in SessionOptions, `threads` the actual number. Throws Error(memory) when not even one frame fits.
-Window choose_window(const Plan& plan, int threads, int frames, std::size_t memory);
+/// `frames`, `memory` and `reserved` as in SessionOptions, `threads` the actual number. Throws Error(memory) when not even one
+/// frame fits.
+Window choose_window(const Plan& plan, int threads, int frames, std::size_t memory, std::size_t reserved = 0);
 
 }  // namespace quell

@@ -27,6 +27,7 @@ class Builder {
     wiring_.steps.resize(plan_.turns.size());
     for (const PlannedTurn& turn : plan_.turns)
       for (const int position : turn.nodes) wire(position);
+    find_feeds();
   }
 
  private:
@@ -142,6 +143,23 @@ class Builder {
     if (producer < 0 || std::ranges::find_if(waits, same) != waits.end()) return;  // inputs are there when a frame begins
     waits.push_back({producer, delay});
     wiring_.steps[at(producer)].awaited_by.push_back({step, delay});
+  }
+
+  // Steps that yield what is kept, or ends it, and those that these need.
+  void find_feeds() {
+    std::vector<bool>& feeds = wiring_.feeds_history;
+    feeds.assign(wiring_.steps.size(), false);
+    std::vector<int> open;
+    for (std::size_t value = 0; value < producers_.size(); ++value)
+      if (!wiring_.lines[value].empty()) open.push_back(step_of(static_cast<int>(value)));
+    for (const WiredReset& reset : wiring_.resets) open.push_back(reset.step);
+    while (!open.empty()) {
+      const int step = open.back();
+      open.pop_back();
+      if (step < 0 || feeds[at(step)]) continue;
+      feeds[at(step)] = true;
+      open.insert(open.end(), wiring_.steps[at(step)].needs.begin(), wiring_.steps[at(step)].needs.end());
+    }
   }
 
   int ahead(int input, int frames) {

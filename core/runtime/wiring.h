@@ -69,6 +69,7 @@ struct Wiring {
   std::vector<AheadRead> ahead;
   std::vector<InitialConstant> constants;
   std::vector<WiredReset> resets;
+  std::vector<bool> feeds_history;  ///< of each step: whether a history needs it, in this frame
 
   explicit Wiring(const Plan& plan);
 };

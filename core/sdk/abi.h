@@ -22,7 +22,8 @@ extern "C" {
 #endif
 
 #define QUELL_ABI_MAJOR 1u
-#define QUELL_ABI_MINOR 1u  // 1: quell_inference::by_rows, QUELL_PORT_ANY_SIZE
+// 1: quell_inference::by_rows, QUELL_PORT_ANY_SIZE. 2: quell_inference::kept, settles
+#define QUELL_ABI_MINOR 2u
 #define QUELL_ABI_VERSION ((QUELL_ABI_MAJOR << 16) | QUELL_ABI_MINOR)
 
 // Element i of an array whose elements may be larger than this header knows.
@@ -229,6 +230,11 @@ typedef struct quell_inference {
   // these need are there in the images, whose sizes and coordinates are those of the whole. Needs scratch_bytes 0, and images as
   // outputs. Prefilled 0.
   uint32_t by_rows;
+  // How long earlier frames last in this node's results, where these come back to it in later frames. kept: the largest share of
+  // its history that is left in a result, so that k frames on no more than kept^k is; 0 to 1. settles: after how many frames
+  // what it counts is the same, whatever it was before. Prefilled 1 and 0, which says that earlier frames may last for ever.
+  double kept;
+  int32_t settles;
 } quell_inference;
 
 typedef struct quell_exec {

@@ -80,6 +80,12 @@ class Inference {
   void set_by_rows() {
     if (raw_.struct_size >= offsetof(quell_inference, by_rows) + sizeof(raw_.by_rows)) raw_.by_rows = 1;
   }
+  /// How fast earlier frames fade from results that come back in later ones: no more than `kept` of the history, 0 to 1, is left
+  /// after each frame, and a counter is the same after `settles` frames, whatever it was. See quell_inference::kept.
+  void set_fading(double kept, int settles = 0) {
+    if (raw_.struct_size < offsetof(quell_inference, settles) + sizeof(raw_.settles)) return;
+    raw_.kept = kept, raw_.settles = settles;
+  }
 
  private:
   const quell_port_shape& in(std::string_view name) const {

@@ -72,7 +72,10 @@ void Sequence::expect(std::string_view input, PortType type) {
 
 std::vector<std::int64_t> Sequence::frames(const std::vector<std::string>& required) const {
   for (const std::string& input : required) state_->require_files(input);
-  if (state_->asked) return state_->asked->frames();
+  return state_->asked ? state_->asked->frames() : complete_frames(required);
+}
+
+std::vector<std::int64_t> Sequence::complete_frames(const std::vector<std::string>& required) const {
   std::vector<std::int64_t> common;
   bool first = true;
   for (const std::string& name : required) {

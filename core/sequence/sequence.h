@@ -72,6 +72,8 @@ class Sequence final : public FrameSource {
   /// The frames to run when these inputs are needed: those asked for (--frames, else "frames" of the sequence.json), else those
   /// for which every input has a file. Ascending. Throws Error(input) when the sequence lacks one of the inputs.
   std::vector<std::int64_t> frames(const std::vector<std::string>& required) const;
+  /// The frames for which every one of these inputs has a file, whatever was asked for. Ascending. Throws as frames().
+  std::vector<std::int64_t> complete_frames(const std::vector<std::string>& required) const;
   /// The files that are missing among the frames asked for, or, when none were asked for, among all frames that any of the
   /// required inputs has. By frame, then by input. Of frames asked for, no more than the first kMostMissing files are told: with
   /// a digit too many there may be millions.

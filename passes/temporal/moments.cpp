@@ -7,6 +7,7 @@
 //
 // Cost:    a division and some ten multiplications a pixel; bound by memory.
 #include <algorithm>
+#include <cmath>
 
 #include "quell/sdk/pass.h"
 #include "quell/sdk/plain_loop.h"
@@ -56,7 +57,11 @@ class Moments final : public Pass {
         max_length_(static_cast<float>(params.max_length)),
         warm_up_(params.warm_up ? 1.0F : 0.0F) {}
 
-  void infer(Inference& inference) const override { inference.set_by_rows(); }
+  void infer(Inference& inference) const override {
+    inference.set_by_rows();
+    const double least = std::max(alpha_, warm_up_ / max_length_);  // share of the new frame
+    inference.set_fading(1 - least, inference.present("length") ? static_cast<int>(std::ceil(max_length_)) : 0);
+  }
 
   void run(const Frame& frame) const override {
     const FloatImage color = frame.image("color"), history = frame.image("history"), length = frame.image("length"),

@@ -70,6 +70,7 @@ class Taa final : public Pass {
 
   void infer(Inference& inference) const override {
     inference.set_by_rows();
+    if (!settings_.weigh) inference.set_fading(1 - settings_.alpha);  // weights may leave all of a dark history
     if (!inference.present("history")) return inference.set_in_place("color", "color");
     inference.set_in_place("color", "history");
     if (settings_.limit != Limit::none) inference.set_radius("color", 1);

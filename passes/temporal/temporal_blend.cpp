@@ -159,6 +159,9 @@ class TemporalBlendPass final : public Pass {
   explicit TemporalBlendPass(const Params& params) : params_(params) {}
 
   void infer(Inference& inference) const override {
+    const bool counts = inference.present("length");
+    const double least = counts ? std::max(params_.alpha, 1 / params_.max_length) : params_.alpha;  // share of the new frame
+    inference.set_fading(1 - least, counts ? static_cast<int>(std::ceil(params_.max_length)) : 0);
     const auto width = static_cast<std::size_t>(inference.size("color").width);
     const bool is_converted = inference.present("history") && params_.clamp != Clamp::none && params_.space == Space::ycocg;
     if (!is_converted) inference.set_by_rows();

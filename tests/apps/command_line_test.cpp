@@ -23,7 +23,8 @@ TEST_F(CommandLine, WithoutArgumentsGivesAShortHelp) {
 }
 
 TEST_F(CommandLine, HelpFitsTheTerminalAndHasAnExample) {
-  for (const std::string command : {"run", "check", "compare", "graph", "passes", "report", "new", "new pass", "new graph"}) {
+  for (const std::string command :
+       {"run", "check", "compare", "graph", "passes", "report", "plan", "new", "new pass", "new graph"}) {
     std::istringstream words(command + " --help");
     const Outcome outcome = quell({std::istream_iterator<std::string>(words), {}});
     EXPECT_EQ(outcome.code, 0) << command;

@@ -11,6 +11,7 @@ namespace quell::app::testing {
 struct Outcome {
   int code = -1;  ///< exit status; 128 + signal when it was killed
   std::string out, err;
+  long peak_resident = 0;  ///< bytes, or those of the test when it was started, if these were more
 };
 
 /// A running quell. Its standard output and error are pipes; the error stream can be a terminal instead, and the output a file.

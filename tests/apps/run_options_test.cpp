@@ -29,12 +29,12 @@ TEST(ParseSchedule, FillsTheSessionsOptions) {
   EXPECT_EQ(usual.schedule, Schedule::concurrent);
   EXPECT_EQ(usual.frames_in_flight, 0);
   EXPECT_EQ(usual.memory, 0U);
-  EXPECT_FALSE(usual.stop_on_error);
+  EXPECT_EQ(usual.on_error, OnError::go_on);
   const SessionOptions other = parse_schedule({"3", "4", "2G", "tbb", "stop"});
   EXPECT_EQ(other.threads, 3);
   EXPECT_EQ(other.frames_in_flight, 4);
   EXPECT_EQ(other.memory, std::size_t{2} << 30);
-  EXPECT_TRUE(other.stop_on_error);
+  EXPECT_EQ(other.on_error, OnError::stop);
   const SessionOptions serial = parse_schedule({.executor = "serial"});
   EXPECT_EQ(serial.schedule, Schedule::serial);
   EXPECT_EQ(serial.frames_in_flight, 1);

@@ -42,9 +42,9 @@ class Failure : public testing::TestWithParam<int> {
  protected:
   SessionOptions options() const { return GetParam() < 0 ? serial() : concurrent(setting(GetParam())); }
   std::vector<FrameReport> run(const std::shared_ptr<const Graph>& graph, const std::vector<std::int64_t>& frames,
-                               bool stop_on_error = false) {
+                               OnError on_error = OnError::go_on) {
     SessionOptions chosen = options();
-    chosen.stop_on_error = stop_on_error;
+    chosen.on_error = on_error;
     Session session(graph, chosen);
     return session.run(frames, source, sink);
   }
@@ -67,6 +67,46 @@ TEST_P(Failure, OfANodeIsAbsentForLaterFramesWithWhatDependsOnIt) {
   EXPECT_EQ(sink.pixel("follower", 4), 4) << "the follower of what failed counts as absent";
   EXPECT_EQ(sink.pixel("follower", 5), 4 + 5);
   EXPECT_EQ(sink.pixel("other", 4), 1 + 2 + 3 + 4) << "what does not depend on it is history all the same";
+}
+
+// Of two sums, one of which fails in frame 3; what frames 4 and 5 make of that.
+std::shared_ptr<const Graph> two_sums() {
+  return graph_of(R"("bad": {"pass": "falter", "in": {"color": "color"}, "params": {"frames": [3]}},)" +
+                      sum_of("bad.color", "follower") + "," + sum_of("color", "other"),
+                  R"("follower": "follower.color", "other": "other.color")");
+}
+
+TEST_P(Failure, EndsAllHistoryWhereThatIsWanted) {
+  EXPECT_THAT(failed(run(two_sums(), {1, 2, 3, 4, 5}, OnError::reset)), ElementsAre(3));
+  EXPECT_THAT(handed_out(sink, "other"), ElementsAre(1, 2, 4, 5));
+  for (const char* sum : {"follower", "other"}) {
+    EXPECT_EQ(sink.pixel(sum, 4), 4);
+    EXPECT_EQ(sink.pixel(sum, 5), 4 + 5);
+  }
+}
+
+TEST_P(Failure, LeavesTheHistoryOfTheFrameBeforeWhereThatIsWanted) {
+  source.unreadable = {5};
+  EXPECT_THAT(failed(run(two_sums(), {1, 2, 3, 4, 5, 6}, OnError::hold)), ElementsAre(3, 5));
+  for (const char* sum : {"follower", "other"}) {
+    EXPECT_EQ(sink.pixel(sum, 4), 1 + 2 + 4) << sum;
+    EXPECT_EQ(sink.pixel(sum, 6), 1 + 2 + 4 + 6) << sum;
+  }
+}
+
+TEST_P(Failure, OfWritingIsNoneOfTheHistory) {
+  for (const OnError on_error : {OnError::reset, OnError::hold}) {
+    sink.items.clear();
+    sink.unwritable = {2};
+    EXPECT_THAT(failed(run(graph_of(sum_of("color", "sum"), R"("sum": "sum.color")"), {1, 2, 3}, on_error)), ElementsAre(2));
+    EXPECT_EQ(sink.pixel("sum", 3), 1 + 2 + 3);
+  }
+}
+
+TEST_P(Failure, OfTheFirstFrameLeavesNothingToHold) {
+  source.unreadable = {1};
+  EXPECT_THAT(failed(run(two_sums(), {1, 2}, OnError::hold)), ElementsAre(1));
+  EXPECT_EQ(sink.pixel("other", 2), 2);
 }
 
 TEST_P(Failure, OfANodeLeavesTheHistoryOfInputs) {
@@ -215,7 +255,7 @@ TEST_P(Failure, EndsTheRunWhenAsked) {
            "bad": {"pass": "falter", "in": {"color": "wait.color"}, "params": {"frames": [3)" +
             others + R"(], "how": "start"}})",
         R"("color": "bad.color")");
-    const auto reports = run(graph, {1, 2, 3, 4, 5, 6, 7, 8}, true);
+    const auto reports = run(graph, {1, 2, 3, 4, 5, 6, 7, 8}, OnError::stop);
     ASSERT_EQ(reports.size(), 3U) << "later frames end sooner, but frame 3 is the first to fail";
     EXPECT_THAT(failed(reports), ElementsAre(3));
     EXPECT_THAT(handed_out(sink, "color"), ElementsAre(1, 2));
@@ -224,12 +264,12 @@ TEST_P(Failure, EndsTheRunWhenAsked) {
 
 TEST_P(Failure, ToReadOrWriteEndsTheRunWhenAsked) {
   source.unreadable = {4};
-  auto reports = run(test_graph(kSumGraph), {1, 2, 3, 4, 5, 6}, true);
+  auto reports = run(test_graph(kSumGraph), {1, 2, 3, 4, 5, 6}, OnError::stop);
   EXPECT_EQ(reports.size(), 4U);
   EXPECT_THAT(handed_out(sink, "color"), ElementsAre(1, 2, 3));
   sink.items.clear();
   sink.unwritable = {2};
-  reports = run(test_graph(kSumGraph), {1, 2, 3, 4, 5, 6}, true);
+  reports = run(test_graph(kSumGraph), {1, 2, 3, 4, 5, 6}, OnError::stop);
   EXPECT_EQ(reports.size(), 2U);
   EXPECT_THAT(handed_out(sink, "color"), ElementsAre(1));
 }

@@ -90,6 +90,33 @@ TEST_P(RandomGraphs, YieldTheSameWhereSessionsGoOnWithWhatOthersHaveSaved) {
   }
 }
 
+// Of an outcome, what frames yield that are not among these.
+Outcome without(Outcome outcome, const std::set<std::int64_t>& frames) {
+  std::erase_if(outcome.pictures, [&](const auto& entry) { return frames.contains(entry.first.second); });
+  std::erase_if(outcome.reports, [&](const FrameReport& report) { return frames.contains(report.frame); });
+  return outcome;
+}
+
+TEST_P(RandomGraphs, YieldTheSameWhereNothingButTheHistoryOfOtherFramesIsWanted) {
+  for (const unsigned seed : seeds(GetParam())) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const auto [scene, graph] = draw_case(seed);
+    const auto checked = load(graph);
+    Dice dice(seed);
+    std::set<std::int64_t> history_only;
+    for (const std::int64_t frame : scene.frames)
+      if (dice.chance(50)) history_only.insert(frame);
+    const SessionOptions options = seed % 4 == 0 ? serial() : concurrent(setting(static_cast<int>(seed % kSettings)));
+    const Outcome got = run_for_history(checked, graph.inputs, scene, with_dumps(options, graph),
+                                        {history_only.begin(), history_only.end()});
+    EXPECT_EQ(got.reports.size(), scene.frames.size());
+    for (const auto& [key, pictured] : got.pictures) EXPECT_FALSE(history_only.contains(key.second)) << key.second;
+    for (const FrameReport& report : got.reports)
+      EXPECT_EQ(report.history_only, history_only.contains(report.frame)) << report.frame;
+    expect_same(without(got, history_only), without(run_alone(checked, scene, graph), history_only));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Block, RandomGraphs, testing::Range(0, kBlocks));
 
 // The graphs must be of a kind that tries what is tested.

@@ -175,11 +175,24 @@ Outcome run_in_parts(const std::shared_ptr<const Graph>& graph, const std::vecto
     session.pool().fill(0xff);
     if (saved) session.restore(*saved);
     const std::vector<std::int64_t> later(std::ranges::upper_bound(scene.frames, frame), scene.frames.end());
-    for (FrameReport& report : session.run(part, source, sink, later)) outcome.reports.push_back(std::move(report));
+    for (FrameReport& report : session.run(part, source, sink, {.later = later})) outcome.reports.push_back(std::move(report));
     saved = session.save();
     EXPECT_TRUE(saved && saved->frame == frame);
     part.clear();
   }
+  outcome.pictures = sink.take();
+  return outcome;
+}
+
+Outcome run_for_history(const std::shared_ptr<const Graph>& graph, const std::vector<TestInput>& inputs, const Scene& scene,
+                        SessionOptions options, const std::vector<std::int64_t>& history_only) {
+  PatternSource source(inputs, scene);
+  RecordingSink sink(scene.unwritable);
+  options.cuts = scene.cuts;
+  Session session(graph, std::move(options));
+  session.pool().fill(0xff);
+  Outcome outcome;
+  outcome.reports = session.run(scene.frames, source, sink, {.history_only = history_only});
   outcome.pictures = sink.take();
   return outcome;
 }

@@ -103,6 +103,9 @@ Outcome run(const std::shared_ptr<const Graph>& graph, const std::vector<TestInp
 /// The same, where after each of these frames the session ends, and another one goes on with what it has saved.
 Outcome run_in_parts(const std::shared_ptr<const Graph>& graph, const std::vector<TestInput>& inputs, const Scene& scene,
                      const SessionOptions& options, const std::set<std::int64_t>& last_frames);
+/// The same as run(), where nothing but the history is wanted of some frames, as RunContext has it.
+Outcome run_for_history(const std::shared_ptr<const Graph>& graph, const std::vector<TestInput>& inputs, const Scene& scene,
+                        SessionOptions options, const std::vector<std::int64_t>& history_only);
 /// Runs serially, then in all 16 settings, and expects the same.
 void expect_same_in_all_settings(const std::shared_ptr<const Graph>& graph, const std::vector<TestInput>& inputs,
                                  const Scene& scene, const std::vector<std::string>& dumps = {});
