@@ -49,7 +49,7 @@ class Reader {
     if (errors_.empty() && version != kVersion)
       errors_.error(root.where, "this version of quell reads checkpoints of form 1, not " + std::to_string(version));
     manifest.frame = integer(root, "frame");
-    manifest.past = {frames(root, "done"), frames(root, "failed")};
+    manifest.past = {frames(root, "done"), frames(root, "failed"), integer(root, "history_from")};
     for (const JsonMember& trait : member(root, "run", Json::Kind::object).members) manifest.run[trait.key] = trait.value.string;
     for (const JsonMember& shape : member(root, "shapes", Json::Kind::object).members)
       manifest.shapes[shape.key] = shape_of(shape.value);
@@ -123,6 +123,7 @@ std::string write_manifest(const CheckpointManifest& manifest) {
                         .add("frame", manifest.frame)
                         .add("done", make_json(range(manifest.past.done)))
                         .add("failed", make_json(range(manifest.past.failed)))
+                        .add("history_from", manifest.past.history_from)
                         .add("run", run.take())
                         .add("shapes", shapes.take())
                         .add("resets", make_json(resets))

@@ -15,6 +15,7 @@ namespace quell::app {
 /// Frames that are through, in this run and in those that it goes on with; each ascending.
 struct PastFrames {
   std::vector<std::int64_t> done, failed;
+  std::int64_t history_from = 0;  ///< the first frame of all, those of a pre-roll included
 };
 
 struct CheckpointManifest {

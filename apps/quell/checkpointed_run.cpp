@@ -38,6 +38,7 @@ void go_on(Checkpoints& checkpoints, Job& job, Surroundings& around) {
   require_neighbor(checkpoints.before->frame, job, around);
   checkpoints.past = checkpoints.before->past;
   around.history_only.clear();
+  around.history_from = checkpoints.past.history_from;
   const auto first_left = std::ranges::upper_bound(job.frames, checkpoints.before->frame);
   require_done({job.frames.begin(), first_left}, *checkpoints.before);
   job.frames.erase(job.frames.begin(), first_left);
@@ -91,6 +92,7 @@ std::optional<Checkpoints> prepare_checkpoints(const CheckpointArguments& argume
   const int every = arguments.every ? parse_count(*arguments.every, "--every", 1, kMostEvery) : kEvery;
   Checkpoints checkpoints{.folder = CheckpointFolder(*arguments.folder, traits_of(job, sequence, options)), .every = every};
   if (arguments.resume) go_on(checkpoints, job, around);
+  checkpoints.past.history_from = around.history_from;
   return checkpoints;
 }
 

@@ -33,7 +33,8 @@ struct Checkpoints {
 
 /// Nothing without --checkpoint. With --resume, takes the frames that are through out of the job's, which may leave none, and
 /// the pre-roll, which the history of the checkpoint makes needless, out of what is around. Throws Error(usage) for options that
-/// do not go together, a checkpoint of another run, or not of the frame before a chunk, and frames before it that nobody computed.
+/// do not go together, a checkpoint of another run, or not of the frame before a chunk, and frames before it that nobody
+/// computed.
 std::optional<Checkpoints> prepare_checkpoints(const CheckpointArguments& arguments, const SequenceArguments& sequence, Job& job,
                                                Surroundings& around, const SessionOptions& options);
 

@@ -84,10 +84,12 @@ void add_options(CLI::App& app, ChunkArguments& arguments) {
 
 Surroundings choose_chunk(const ChunkArguments& arguments, const SequenceArguments& sequence,
                           const std::vector<std::int64_t>& cuts, Job& job) {
+  Surroundings around;
+  around.history_from = job.frames.front();
   if (!arguments.chunk && !arguments.preroll) {
     if (arguments.tolerance)
       throw Error(Fault::usage, "--preroll-tolerance", "it is for --preroll auto or --chunk, and neither is given");
-    return {};
+    return around;
   }
   // A chunk of --frames is a part of a run over these; frames beside them are not its business.
   const std::vector<std::int64_t> all = arguments.chunk ? job.frames : list_all(job);
@@ -95,7 +97,6 @@ Surroundings choose_chunk(const ChunkArguments& arguments, const SequenceArgumen
     throw Error(Fault::usage, "--preroll", "nothing lies before the whole sequence; name a part of it with --frames or --chunk");
   if (arguments.chunk) job.frames = select(job.frames, parse_chunk(*arguments.chunk));
 
-  Surroundings around;
   auto first = std::ranges::lower_bound(all, job.frames.front());
   if (arguments.chunk && first != all.begin()) around.last_of_chunk_before = *(first - 1);
   const Preroll preroll = find_frames(arguments, job.plan);
@@ -111,6 +112,7 @@ Surroundings choose_chunk(const ChunkArguments& arguments, const SequenceArgumen
   } else if (!around.history_only.empty() && around.history_only.front() == all.front()) {
     around.reason += around.history_only.size() < static_cast<std::size_t>(*preroll.frames) ? "; there are no more" : "";
   }
+  around.history_from = around.history_only.empty() ? job.frames.front() : around.history_only.front();
   around.after.assign(std::ranges::upper_bound(all, job.frames.back()), all.end());
   return around;
 }

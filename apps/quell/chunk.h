@@ -25,6 +25,7 @@ void add_options(CLI::App& app, ChunkArguments& arguments);
 struct Surroundings {
   std::vector<std::int64_t> history_only;            ///< frames that warm the history up, and are not written; ascending
   std::vector<std::int64_t> after;                   ///< frames that edges may look ahead at, ascending
+  std::int64_t history_from = 0;                     ///< the first frame that the history of the results knows
   std::string reason;                                ///< of the pre-roll, for people: why so many
   std::optional<std::int64_t> last_of_chunk_before;  ///< of --chunk, where it is not the first
 };

@@ -139,11 +139,11 @@ Job prepare_job(std::shared_ptr<const Graph> graph, const SequenceArguments& arg
   job.plan = make_plan(graph, shapes_of(*graph, *job.sequence), dumps);
   job.inputs = select_inputs(job.plan, found);
   ChosenFrames chosen = choose_frames(*job.sequence, job.inputs, arguments.on_missing, place);
-  job.frames = std::move(chosen.frames), job.cuts = std::move(chosen.cuts);
-  if (chosen.holds.empty())
+  job.frames = std::move(chosen.frames), job.cuts = std::move(chosen.cuts), job.holds = std::move(chosen.holds);
+  if (job.holds.empty())
     job.source = job.sequence;
   else
-    job.source = std::make_shared<HoldingSource>(job.sequence, std::move(chosen.holds));
+    job.source = std::make_shared<HoldingSource>(job.sequence, job.holds);
   tell_choice(job);
   tell_new_warnings(job);
   return job;

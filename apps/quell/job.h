@@ -20,8 +20,9 @@ struct Job {
   std::vector<InputFiles> inputs;       ///< the files of each input that is read, in the graph's order
   std::vector<std::int64_t> frames;     ///< to be computed
   std::shared_ptr<FrameSource> source;  ///< of their images: the sequence, or one in which other frames stand in
-  std::vector<std::int64_t> cuts;       ///< before which history ends, because frames are missing
-  std::set<std::string> told;           ///< warnings of the sequence that were printed
+  std::map<std::pair<std::string, std::int64_t>, std::int64_t> holds;  ///< of missing files: see ChosenFrames
+  std::vector<std::int64_t> cuts;                                      ///< before which history ends, because frames are missing
+  std::set<std::string> told;                                          ///< warnings of the sequence that were printed
 };
 
 /// Loads the plugins and the graph, and tells what options changed in it. Throws Error(plugin) or Error(usage).

@@ -118,8 +118,10 @@ FileSinkOptions parse_output(const OutputArguments& arguments) {
 
 void complete_output(FileSinkOptions& options, const OutputArguments& arguments, const Job& job, const std::string& inputs) {
   if (arguments.padding.empty()) options.padding = job.sequence->padding();
-  options.attributes = {
-      {"Software", std::string("quell ") + QUELL_VERSION}, {"quell:version", QUELL_VERSION}, {"quell:graph", job.graph->name}, {"quell:inputs", inputs}};
+  options.attributes = {{"Software", std::string("quell ") + QUELL_VERSION},
+                        {"quell:version", QUELL_VERSION},
+                        {"quell:graph", job.graph->name},
+                        {"quell:inputs", inputs}};
   const auto hash_of = [&](const std::map<std::string, Endpoint>& results) {
     return FileAttribute{"quell:graph_hash", graph_hash(*job.graph, results)};
   };
@@ -137,7 +139,9 @@ void complete_output(FileSinkOptions& options, const OutputArguments& arguments,
   if (picture < 0) return;
   options.original = [sequence = job.sequence.get(), window = find_window(*job.sequence),
                       name = job.graph->inputs[static_cast<std::size_t>(picture)].name,
-                      images = options.keep_channels ? image_inputs(job.plan) : std::vector<std::string>()](std::int64_t frame) {
+                      images = options.keep_channels ? image_inputs(job.plan) : std::vector<std::string>(),
+                      holds = job.holds](std::int64_t frame) {
+    if (const auto held = holds.find({name, frame}); held != holds.end()) frame = held->second;
     return std::optional(find_original(*sequence, name, images, window, frame));
   };
 }

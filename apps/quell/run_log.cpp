@@ -6,10 +6,10 @@
 #include <algorithm>
 
 #include "json_lines.h"
-#include "run_options.h"
 #include "quell/graph/graph_hash.h"
 #include "quell/sdk/abi.h"
 #include "quell/simd/isa.h"
+#include "run_options.h"
 
 namespace quell::app {
 namespace {

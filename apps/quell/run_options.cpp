@@ -81,8 +81,10 @@ void add_options(CLI::App& app, ScheduleArguments& arguments) {
   add_text(app, "--executor", arguments.executor, "NAME",
            "tbb, the default, or serial: one node after the other, for comparison. The results are the same.")
       ->group(kScheduleGroup);
-  add_text(app, "--on-error", arguments.on_error, "WHAT", "When a frame fails: continue, the default, with the others; stop; or continue, where it could not be computed, with the "
-           "history ended (reset) or that of the frame before (hold).")
+  add_text(
+      app, "--on-error", arguments.on_error, "WHAT",
+      "When a frame fails: continue, the default, with the others; stop; or continue, where it could not be computed, with the "
+      "history ended (reset) or that of the frame before (hold).")
       ->group(kScheduleGroup);
   add_text(app, "--cut", arguments.cut, "FRAMES",
            "Frames with which a new shot begins, such as 101,240: nothing of the frames before them is used from there on.")

@@ -141,6 +141,9 @@ Preparation prepare(const RunArguments& arguments, Watch* watch) {
   options.cuts.insert(options.cuts.end(), job.cuts.begin(), job.cuts.end());
   Surroundings around = choose_chunk(arguments.chunk, arguments.sequence, options.cuts, job);
   warn_of_idle_cuts(options.cuts, job.frames, job.plan);
+  std::optional<Checkpoints> checkpoints = prepare_checkpoints(arguments.checkpoint, arguments.sequence, job, around, options);
+  if (job.frames.empty())
+    return {.job = std::move(job), .output = {}, .sink = {}, .checkpoints = std::move(checkpoints)};  // all are through
   complete_output(output, arguments.output, job, describe_inputs(job, arguments.sequence, options, around));
   auto sink = std::make_unique<FileSink>(output);
   std::vector<ResultFiles> results = is_to_video ? list_video(job, arguments.output.folder) : list_results(job, *sink, output);
@@ -155,7 +158,7 @@ Preparation prepare(const RunArguments& arguments, Watch* watch) {
       .job = std::move(job), .output = std::move(output), .sink = std::move(sink), .to_measure = std::move(measuring)};
   run.results = std::move(results), run.labels = std::move(labels), run.options = std::move(options);
   run.around = std::move(around);
-  run.checkpoints = prepare_checkpoints(arguments.checkpoint, arguments.sequence, run.job, run.around, run.options);
+  run.checkpoints = std::move(checkpoints);
   if (const std::string preroll = describe(run.around); !preroll.empty() && !arguments.dry_run) spdlog::info(preroll);
   return run;
 }

@@ -15,6 +15,10 @@ namespace {
 
 using Expected = std::vector<FileAttribute>;
 
+bool looks_back(const Plan& plan) {
+  return std::ranges::any_of(plan.histories, [](const PlannedHistory& kept) { return kept.frames > 0; });
+}
+
 bool is_image_file(const fs::path& file) { return file.extension() != ".json"; }
 
 void read_whole(const fs::path& path) {
@@ -94,7 +98,7 @@ class Finder {
     std::vector<std::optional<fs::file_time_type>> all;
     std::optional<fs::file_time_type> before;
     for (const std::int64_t frame : job_.frames) {
-      std::optional<fs::file_time_type> latest = job_.plan.histories.empty() ? std::nullopt : before;
+      std::optional<fs::file_time_type> latest = looks_back(job_.plan) ? before : std::nullopt;
       bool complete = true;
       for (const InputFiles& input : job_.inputs) {
         std::error_code error;
@@ -127,9 +131,9 @@ std::string describe_inputs(const Job& job, const SequenceArguments& sequence, c
       add(in.substr(0, in.find('=')) + " read", in.substr(colon + 1));
   if (sequence.window) add("window", *sequence.window);
   if (sequence.crop) add("crop", *sequence.crop);
-  if (job.plan.histories.empty()) return text;
+  if (!looks_back(job.plan)) return text;
   if (!options.cuts.empty()) add("cuts", FrameRange(options.cuts).text());
-  add("history from", std::to_string(around.history_only.empty() ? job.frames.front() : around.history_only.front()));
+  add("history from", std::to_string(around.history_from));
   return text;
 }
 

@@ -75,10 +75,8 @@ TEST_F(Gaps, EndTheHistoryWhereThatIsWanted) {
   const Outcome outcome = compute("got", {"--frames", "1-6", "--on-missing", "reset"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(list("got"), ElementsAre(name(1), name(2), name(4), name(5), name(6)));
-  for (const int frame : {4, 5, 6}) {  // pixels; headers tell another beginning of the history
-    const Outcome same = run({"compare", text("got/" + name(frame)), text("want/" + name(frame)), "--metrics", "rmse"});
-    EXPECT_THAT(same.out, ::testing::ContainsRegex("rmse +0($|[^.0-9])")) << same.out;
-  }
+  for (const int frame : {4, 5, 6})  // headers tell another beginning of the history
+    EXPECT_EQ(pixels_of(path("got") / name(frame)), pixels_of(path("want") / name(frame))) << frame;
 }
 
 TEST_F(Gaps, FailAloneWhereTheRunKeepsGoing) {

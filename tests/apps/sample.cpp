@@ -8,6 +8,7 @@
 
 #include "quell/image/image.h"
 #include "quell/sequence/file_sink.h"
+#include "quell/sequence/image_file.h"
 
 namespace quell::app::testing {
 namespace fs = std::filesystem;
@@ -95,6 +96,20 @@ std::vector<std::pair<std::string, std::string>> RunnerTest::contents(const std:
   std::vector<std::pair<std::string, std::string>> files;
   for (const std::string& name : list(folder)) files.emplace_back(name, read_file(path(folder) / name));
   return files;
+}
+
+std::vector<float> pixels_of(const fs::path& path) {
+  ImageFile file(path);
+  const Rectangle window = file.data_window(0);
+  BufferPool pool;
+  std::vector<float> values;
+  for (int channel = 0; channel < static_cast<int>(file.channels().size()); ++channel) {
+    Image image(QUELL_TYPE_SCALAR, {window.width, window.height}, pool);
+    file.read({channel}, window, image.writable_floats());
+    for (int y = 0; y < window.height; ++y)
+      values.insert(values.end(), image.floats().row(y), image.floats().row(y) + window.width);
+  }
+  return values;
 }
 
 }  // namespace quell::app::testing

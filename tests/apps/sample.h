@@ -40,4 +40,7 @@ class RunnerTest : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
+/// All channels of an image file, one behind the other.
+std::vector<float> pixels_of(const std::filesystem::path& file);
+
 }  // namespace quell::app::testing
