@@ -12,6 +12,8 @@ namespace quell::app {
 
 /// Made by CMake from apps/report/page.html.
 extern const std::string_view kReportPage;
+/// From apps/report/src/means.json: an object whose keys are the passes whose weights the page tells.
+extern const std::string_view kReportMeans;
 
 /// The text of a value that can stand in a <script> of a page whatever its strings hold.
 std::string script_json(const Json& value);
