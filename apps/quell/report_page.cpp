@@ -6,6 +6,7 @@
 
 #include "quell/sequence/pending_file.h"
 #include "quell/text/error.h"
+#include "quell/text/html_text.h"
 #include "results.h"
 
 namespace quell::app {
@@ -31,20 +32,6 @@ std::string script_json(const Json& value) {
     else
       text += c;
   return text;
-}
-
-std::string escape_html(std::string_view text) {
-  std::string escaped;
-  for (const char c : text)
-    if (c == '<')
-      escaped += "&lt;";
-    else if (c == '>')
-      escaped += "&gt;";
-    else if (c == '&')
-      escaped += "&amp;";
-    else
-      escaped += c;
-  return escaped;
 }
 
 void check_report_file(const std::filesystem::path& file) {

@@ -12,11 +12,11 @@ namespace quell::app {
 
 /// Made by CMake from apps/report/page.html.
 extern const std::string_view kReportPage;
+/// From apps/report/src/means.json: an object whose keys are the passes whose weights the page tells.
+extern const std::string_view kReportMeans;
 
 /// The text of a value that can stand in a <script> of a page whatever its strings hold.
 std::string script_json(const Json& value);
-/// Text between tags.
-std::string escape_html(std::string_view text);
 
 /// Throws Error(usage) naming --out when something stands there that is no report, or there is no such folder.
 void check_report_file(const std::filesystem::path& file);

@@ -1,6 +1,7 @@
 #include "report_run.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 
 #include "graphviz.h"
@@ -8,6 +9,8 @@
 #include "quell/graph/plan_dot.h"
 #include "quell/runtime/sanitize.h"
 #include "quell/text/error.h"
+#include "quell/text/json.h"
+#include "report_page.h"
 
 namespace quell::app {
 namespace {
@@ -18,9 +21,19 @@ Names names_of_results(const Plan& plan) {
   return names;
 }
 
-/// Passes whose weights the page tells (apps/report/src/taps.ts).
-const Names kMeans{"atrous",    "bilateral", "gaussian", "history_fix",    "joint_bilateral", "mix",           "moments", "nlm",
-                   "reproject", "scale",     "taa",      "temporal_blend", "variance",        "variance_blur", "window"};
+/// Passes whose weights the page tells.
+const Names& means() {
+  static const Names names = [] {
+    Diagnostics errors;
+    const auto text = std::make_shared<SourceText>(SourceText{"means.json", std::string(kReportMeans)});
+    const std::optional<Json> list = parse_json(text, errors);
+    assert(list && errors.empty());
+    Names found;
+    for (const JsonMember& pass : list->members) found.insert(pass.key);
+    return found;
+  }();
+  return names;
+}
 
 /// Inputs that are read by some graph, each from the first graph that reads it.
 std::map<std::string, const ReportedGraph*> find_inputs(const std::vector<ReportedGraph>& graphs) {
@@ -103,13 +116,15 @@ std::vector<std::string> list_inner_images(const Plan& plan) {
 Weighed find_weighed(const Plan& plan) {
   Weighed found;
   const std::vector<PlannedResult> results = plan.results();
+  // A result goes by its own name; what the sequence gives goes by that of the input, even where it is a result, too.
   const auto add = [&](Names& names, const Endpoint& endpoint) {
     const auto result = std::ranges::find(results, endpoint, &PlannedResult::from);
-    names.insert(result != results.end() ? result->name : plan.graph->describe(endpoint));
+    if (result != results.end()) names.insert(result->name);
+    names.insert(plan.graph->describe(endpoint));
   };
   for (const PlannedNode& planned : plan.nodes) {
     const Node& node = plan.graph->nodes[static_cast<std::size_t>(planned.node)];
-    if (!kMeans.contains(node.pass->id)) continue;
+    if (!means().contains(node.pass->id)) continue;
     for (const std::vector<Edge>& edges : node.inputs)
       for (const Edge& edge : edges)
         if (!edge.from.is_nothing() && edge.delay >= 0 && edge.delay <= 1)

@@ -94,8 +94,10 @@ int open_connection(const Address& to) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
-  errno = 0;
-  if (getaddrinfo(to.host.c_str(), to.port.c_str(), &hints, &found) != 0) return -1;
+  if (getaddrinfo(to.host.c_str(), to.port.c_str(), &hints, &found) != 0) {
+    errno = 0;  // it leaves there whatever its search came upon
+    return -1;
+  }
   int connection = -1;
   for (const addrinfo* address = found; address && connection < 0; address = address->ai_next) {
     connection = socket(address->ai_family, address->ai_socktype | SOCK_CLOEXEC, address->ai_protocol);

@@ -14,8 +14,7 @@ namespace quell::app {
 class TevSink final : public FrameSink {
  public:
   /// Connects. The other sink must outlive this one. `address` is HOST:PORT, or HOST, with tev's own port 14158; HOST may be
-  /// [IPV6]. Throws
-  /// Error(usage) naming --tev when nobody answers.
+  /// [IPV6]. Throws Error(usage) naming --tev when nobody answers.
   TevSink(FrameSink& sink, const std::string& address);
   ~TevSink() override;
 

@@ -9,8 +9,8 @@ namespace {
 
 std::string words(const Pin& pin, bool gone) {
   const std::string_view ink = gone ? kGone : pin.connected ? kInk : kQuiet;
-  std::string text = html_font(escape_html(pin.name), ink, 10);
-  if (!pin.type.empty()) text += html_font(" " + escape_html(pin.type), gone ? kGone : kQuiet, 8);
+  std::string text = html_font(html_label(pin.name), ink, 10);
+  if (!pin.type.empty()) text += html_font(" " + html_label(pin.type), gone ? kGone : kQuiet, 8);
   return text;
 }
 
@@ -33,8 +33,8 @@ std::string html_node(const DrawnNode& node) {
   std::string table =
       "<TABLE BORDER=\"1\" CELLBORDER=\"0\" CELLSPACING=\"0\" CELLPADDING=\"2\" STYLE=\"ROUNDED\" BGCOLOR=\"white\" COLOR=\"" +
       frame + "\">";
-  table += "<TR><TD COLSPAN=\"5\" CELLPADDING=\"4\">" + html_font("<B>" + escape_html(node.name) + "</B>", ink, 12) + "<BR/>" +
-           html_font(escape_html(node.pass), frame, 10) + "</TD></TR>";
+  table += "<TR><TD COLSPAN=\"5\" CELLPADDING=\"4\">" + html_font("<B>" + html_label(node.name) + "</B>", ink, 12) + "<BR/>" +
+           html_font(html_label(node.pass), frame, 10) + "</TD></TR>";
   for (std::size_t row = 0; row < std::max(node.left.size(), node.right.size()); ++row)
     table += "<TR>" + left_cells(node, row) + "<TD WIDTH=\"14\"></TD>" + right_cells(node, row) + "</TR>";
   return table + "<TR><TD COLSPAN=\"5\" HEIGHT=\"3\"></TD></TR></TABLE>";  // room for the round corners

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "quell/text/diagnostic.h"
+#include "quell/text/html_text.h"
 
 namespace quell::planning {
 namespace {
@@ -41,22 +42,9 @@ std::string quote_dot(std::string_view text) {
   return out + "\"";
 }
 
-std::string escape_html(std::string_view text) {
+std::string html_label(std::string_view text) {
   std::string out;
-  for (const char c : printable(text)) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else if (c == '\n')
-      out += "<BR/>";
-    else
-      out += c;
-  }
+  for (const char c : escape_html(text)) out += c == '\n' ? "<BR/>" : std::string(1, c);
   return out;
 }
 

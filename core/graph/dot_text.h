@@ -18,8 +18,8 @@ std::string_view color_of(PortType type);
 
 /// A string in its double quotes, as the value of an attribute that is shown as it is.
 std::string quote_dot(std::string_view text);
-/// Text within an HTML-like label.
-std::string escape_html(std::string_view text);
+/// Text within an HTML-like label, of several lines where it has line feeds.
+std::string html_label(std::string_view text);
 /// The same in a color, and a size in points.
 std::string html_font(std::string_view html, std::string_view color, int size);
 /// A small square; hollow, or filled with its color.

@@ -65,7 +65,7 @@ class Drawing {
   void draw_end(const std::string& id, const std::string& name, PortType type, bool gone, const std::string& more,
                 const std::string& tooltip) {
     const std::string line(color(type, gone)), ink(gone ? kGone : kInk);
-    std::string label = html_font("<B>" + escape_html(name) + "</B>", ink, 11);
+    std::string label = html_font("<B>" + html_label(name) + "</B>", ink, 11);
     if (name != quell::name(type)) label += "<BR/>" + html_font(quell::name(type), gone ? kGone : kQuiet, 9);
     out_ += "  " + quote_dot(id) + " [shape=ellipse, margin=\"0.08,0.04\", penwidth=2, color=\"" + line + "\", " + more +
             "label=<" + label + ">, tooltip=" + quote_dot(tooltip) + "];\n";
@@ -110,7 +110,7 @@ class Drawing {
         if (node_of(other).name.starts_with(inner)) members.push_back(other);
       const std::string indent(2 * depth, ' ');
       out_ += indent + "subgraph " + quote_dot("cluster " + inner) + " {\n";
-      out_ += indent + "  label=<" + html_font("<B>" + escape_html(rest.substr(0, dot)) + "</B>", kQuiet, 11) +
+      out_ += indent + "  label=<" + html_font("<B>" + html_label(rest.substr(0, dot)) + "</B>", kQuiet, 11) +
               ">; style=\"rounded,filled\"; color=\"#b0b0b0\"; fillcolor=\"#f6f6f6\"; tooltip=" +
               quote_dot("subgraph " + inner.substr(0, inner.size() - 1)) + ";\n";
       draw_scope(inner, members, depth + 1);
@@ -238,8 +238,8 @@ class Drawing {
     const auto sign = [](const std::string& picture, std::string_view meaning) {
       return "<TD>" + picture + "</TD><TD>" + html_font(meaning, kInk, 10) + "</TD><TD WIDTH=\"6\"></TD>";
     };
-    line(html_font("<B>" + escape_html(title()) + "</B>", kInk, 12));
-    if (const std::string gone = names_of_gone(); !gone.empty()) line(html_font("left out: " + escape_html(gone), kQuiet, 10));
+    line(html_font("<B>" + html_label(title()) + "</B>", kInk, 12));
+    if (const std::string gone = names_of_gone(); !gone.empty()) line(html_font("left out: " + html_label(gone), kQuiet, 10));
     std::string signs;
     for (const PortType type : types_) signs += sign(html_square(color_of(type), true), name(type));
     signs += sign(html_square(kQuiet, true), "required") + sign(html_square(kQuiet, false), "optional") +

@@ -147,6 +147,14 @@ TEST_F(Report, KeepsInnerImagesOfOneFrameOrAllOrNone) {
   EXPECT_THAT(outcome.err, HasSubstr("--inner: frame 7 is not computed; the frames are 1-4"));
 }
 
+TEST_F(Report, KeepsWhatMeansReadOfTheFrameBeforeThoughItIsAResultToo) {
+  write_file("past.json", R"({"quell": 1, "inputs": {"color": "color"}, "nodes": {
+    "blend": {"pass": "temporal_blend", "in": {"color": "color", "history": {"from": "color", "delay": 1, "initial": "none"}}}},
+    "outputs": {"color": "blend.color", "as_it_came": "color"}})");
+  ASSERT_EQ(report({text("past.json"), "--every", "3"}).code, 0);
+  EXPECT_THAT(images(data()), ::testing::Contains("noisy color 1 3 4"));
+}
+
 TEST_F(Report, SetsParametersOfOneGraphByItsLabel) {
   const Outcome outcome = report({graph_, "twice=" + graph_, "--set", "twice:scale.gain=2"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -182,6 +190,9 @@ TEST_F(Report, WarnsBeforeItBecomesLarge) {
   const Outcome outcome = report({text("large.json"), text("large.json"), "--inner", "none", "--reference", "reference"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("MB, which browsers are slow to open; --every N keeps"));
+  const std::size_t warned = outcome.err.find("the report will have about "), computed = outcome.err.find("large: 4 frames in ");
+  ASSERT_NE(warned, std::string::npos) << outcome.err;
+  EXPECT_LT(warned, computed) << outcome.err;
   const Outcome smaller = report({text("large.json"), text("large.json"), "--inner", "none", "--every", "2"});
   EXPECT_THAT(smaller.err, ::testing::Not(HasSubstr("browsers are slow")));
 }

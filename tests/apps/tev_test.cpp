@@ -189,6 +189,7 @@ TEST_F(Tev, ThatDoesNotAnswerIsAnErrorBeforeTheRun) {
     return refused.err;
   };
   for (const std::string bad : {":1", "[::1", "[]:1", "host:"}) EXPECT_THAT(told(bad), HasSubstr("'" + bad + "' is no address"));
+  EXPECT_THAT(told("127.0.0.1:tev"), HasSubstr("no tev answers at 127.0.0.1:tev: the host or port is not known; start it first"));
   EXPECT_THAT(told("[::1]:1"), HasSubstr("no tev answers at [::1]:1: "));
   EXPECT_THAT(told("::1"), HasSubstr("no tev answers at [::1]:14158: "));
   EXPECT_THAT(told("[::1]"), HasSubstr("no tev answers at [::1]:14158: "));

@@ -4,6 +4,7 @@ import { type ImageSeries, type Report, title } from "./data";
 import type { Stage } from "./stage";
 import { type Mode, numbered, referenceOf, type State, type Store } from "./state";
 import { find, make } from "./text";
+import { displayRatio } from "./view";
 
 function fillChoices(report: Report) {
   const groups: [string, (image: ImageSeries) => boolean][] = [
@@ -59,7 +60,7 @@ export function listenToControls(store: Store, actions: Actions, stage: Stage) {
   listen("exposure", "input", (range) => actions.setExposure(Number(range.value)));
   listen("wipe", "input", (range) => store.set({ wipe: Number(range.value) / 100 }));
   listen("fit", "click", () => stage.zoom((view) => view.fit()));
-  listen("actual", "click", () => stage.zoom((view) => view.zoomTo(1)));
+  listen("actual", "click", () => stage.zoom((view) => view.zoomTo(1 / displayRatio())));
   listen("zoom-in", "click", () => stage.zoom((view) => view.zoomTo(view.zoom * 2)));
   listen("zoom-out", "click", () => stage.zoom((view) => view.zoomTo(view.zoom / 2)));
 }

@@ -47,7 +47,7 @@ export function listenToKeys(actions: Actions, stage: Stage, store: Store) {
   const acts = listActs(actions, stage, store);
   const isTaken = (event: KeyboardEvent): boolean => {
     const digit = /^(?:Digit|Numpad)([1-9])$/.exec(event.code)?.[1];
-    if (digit) {
+    if (digit && !event.getModifierState("AltGraph")) {
       const index = numbered(store.report)[Number(digit) - 1];
       if (index !== undefined) actions.choose(event.shiftKey ? "right" : "left", index);
       return index !== undefined;
@@ -57,7 +57,8 @@ export function listenToKeys(actions: Actions, stage: Stage, store: Store) {
     return act !== undefined || (event.target === stage.canvas && movePixel(event, stage, store));
   };
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    // Behind AltGr, which Windows tells as Ctrl and Alt, other keyboards have [ and ].
+    if (event.metaKey || ((event.ctrlKey || event.altKey) && !event.getModifierState("AltGraph"))) return;
     const { target } = event; // of an event made by a script it may be the document, which matches nothing
     if (target instanceof Element && target.matches("select, textarea, input:not([type=range]):not([type=radio])")) return;
     if (isTaken(event)) event.preventDefault();

@@ -1,7 +1,8 @@
 // Plots: figures over frames, times of passes, memory.
 import * as Plot from "@observablehq/plot";
 import { median, type Report } from "./data";
-import { find, make } from "./text";
+import { graphSeconds } from "./table";
+import { find, make, millisecondsText } from "./text";
 
 // Observable's ten, which are told apart on light and dark; gray is for what was not denoised.
 const palette = ["#4269d0", "#ff725c", "#3ca951", "#a463f2", "#efb118", "#6cc5b0", "#ff8ab7", "#97bbf5", "#9c6b4e"];
@@ -25,12 +26,13 @@ export function names(report: Report): { name: string; color: string }[] {
   return list;
 }
 
+/** NaN where there is no figure, or an infinite one (psnr of equal images), which no axis holds: the table tells it. */
 function points(report: Report, metric: number): Point[] {
   const found: Point[] = [];
   const add = (name: string, frames: ((number | null)[] | null)[]) =>
     frames.forEach((figures, index) => {
-      const value = figures?.[metric];
-      if (typeof value === "number" && Number.isFinite(value)) found.push({ frame: report.frames[index]!, value, name });
+      const value = figures?.[metric] ?? NaN;
+      found.push({ frame: report.frames[index]!, value: Number.isFinite(value) ? value : NaN, name });
     });
   for (const [name, figures] of Object.entries(report.noisy)) add(`noisy (${name})`, figures.frames);
   for (const graph of report.graphs) {
@@ -73,7 +75,8 @@ export function showPlots(report: Report) {
   const grid = make("div", { class: "grid" });
   body.append(grid);
   report.metrics.forEach((metric, index) => {
-    const data = points(report, index); // equal images have an infinite psnr, which no axis holds: the table tells it
+    const all = points(report, index);
+    const data = all.filter(({ value }) => !Number.isNaN(value));
     if (data.length === 0) return;
     const place = make("div", { class: "plot" });
     const head = make("h3", { title: metric.summary }, metric.name, make("small", {}, ` ${metric.unit ? metric.unit + ", " : ""}${metric.name === "warped" ? "near 0" : metric.higher ? "higher" : "lower"} is better`));
@@ -87,7 +90,7 @@ export function showPlots(report: Report) {
         y: { label: null, grid: true, nice: true },
         color: { domain: series.map(({ name }) => name), range: series.map(({ color }) => color) },
         marks: [
-          Plot.lineY(data, { x: "frame", y: "value", z: "name", stroke: "name", strokeWidth: 2 }),
+          Plot.lineY(all, { x: "frame", y: "value", z: "name", stroke: "name", strokeWidth: 2 }),
           Plot.dot(data, { x: "frame", y: "value", fill: "name", r: 2.5 }),
           Plot.tip(data, Plot.pointer({ x: "frame", y: "value", stroke: "name", title: (d: Point) => `${d.name}\nframe ${d.frame}\n${d.value.toPrecision(5)}` })),
         ],
@@ -114,9 +117,8 @@ export function showTimes(report: Report) {
   body.append(grid);
   report.graphs.forEach((graph, index) => {
     const data = bars[index]!;
-    const total = data.reduce((sum, bar) => sum + bar.ms, 0);
     const place = make("div", { class: "plot" });
-    grid.append(make("figure", {}, make("h3", {}, graph.label, make("small", {}, ` ${total.toFixed(total < 10 ? 2 : 1)} ms a frame`)), place));
+    grid.append(make("figure", {}, make("h3", {}, graph.label, make("small", {}, ` ${millisecondsText(graphSeconds(report, index))} a frame`)), place));
     const longest = Math.max(...data.map((bar) => bar.node.length));
     drawWide(place, `time of each node of ${graph.label}: ${data.map((bar) => `${bar.node} ${bar.ms.toFixed(2)} ms`).join(", ")}`, (width) =>
       Plot.plot({

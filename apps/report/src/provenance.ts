@@ -9,10 +9,17 @@ function quoteWord(word: string): string {
 
 function copyable(text: string): HTMLElement {
   const button = make("button", { type: "button" }, "Copy");
-  button.addEventListener("click", () => {
-    void navigator.clipboard?.writeText(text).then(() => (button.textContent = "Copied"));
+  const pre = make("pre", { tabindex: "0" }, text);
+  button.addEventListener("click", async () => {
+    try {
+      await navigator.clipboard.writeText(text);
+      button.textContent = "Copied";
+    } catch {
+      getSelection()?.selectAllChildren(pre); // where a browser gives files from disk no clipboard
+      button.textContent = "Selected";
+    }
   });
-  return make("div", { class: "copy" }, make("pre", { tabindex: "0" }, text), button);
+  return make("div", { class: "copy" }, pre, button);
 }
 
 export function showProvenance(report: Report) {

@@ -1,8 +1,9 @@
 // The canvas: what part of the images it shows, and how they are drawn.
 import type { Picture } from "./pictures";
+import type { Pixels } from "./pixels";
 import type { Store } from "./state";
 import { find } from "./text";
-import { View } from "./view";
+import { displayRatio, View } from "./view";
 
 const kValues = 44; // CSS pixels a pixel from which on values are written into it
 
@@ -57,7 +58,7 @@ export class Stage {
     const paneWidth = stage.clientWidth / this.panes;
     const most = Math.max(240, window.innerHeight * 0.62);
     const cssHeight = Math.min(most, (paneWidth * height) / width);
-    const ratio = window.devicePixelRatio || 1;
+    const ratio = displayRatio();
     const size = { width: Math.round(stage.clientWidth * ratio), height: Math.round(cssHeight * ratio) };
     if (this.canvas.width !== size.width || this.canvas.height !== size.height) Object.assign(this.canvas, size);
     this.canvas.style.height = `${cssHeight}px`;
@@ -103,20 +104,24 @@ export class Stage {
     context.clip();
     const [x, y] = view.toPane(0, 0);
     context.drawImage(picture.canvas, at + x, y, view.width * view.zoom, view.height * view.zoom);
-    if (view.zoom >= kValues && picture.pixels) this.writeValues(picture, at);
+    if (picture.pixels) this.writeValues(picture.pixels, at);
     context.restore();
   }
-  private writeValues(picture: Picture, at: number) {
+  /** Into pixels that are large enough; the image may have another size than the picture that the view tells of. */
+  private writeValues(pixels: Pixels, at: number) {
     const { context, view } = this;
-    const pixels = picture.pixels!;
-    const size = Math.min(14, view.zoom / 5.5);
+    const [across, down] = [view.width / pixels.width, view.height / pixels.height];
+    if (view.zoom * across < kValues) return;
+    const size = Math.min(14, (view.zoom * across) / 5.5);
     context.font = `${size}px ui-monospace, monospace`;
     context.textAlign = "center";
-    const [fromX, fromY] = view.toPicture(0, 0).map((v) => Math.max(0, Math.floor(v))) as [number, number];
-    const [toX, toY] = view.toPicture(view.paneWidth, view.paneHeight).map(Math.ceil) as [number, number];
+    const [left, top] = view.toPicture(0, 0);
+    const [right, bottom] = view.toPicture(view.paneWidth, view.paneHeight);
+    const [fromX, fromY] = [Math.max(0, Math.floor(left / across)), Math.max(0, Math.floor(top / down))];
+    const [toX, toY] = [Math.ceil(right / across), Math.ceil(bottom / down)];
     for (let y = fromY; y < Math.min(pixels.height, toY); ++y)
       for (let x = fromX; x < Math.min(pixels.width, toX); ++x) {
-        const [px, py] = view.toPane(x + 0.5, y + 0.5);
+        const [px, py] = view.toPane((x + 0.5) * across, (y + 0.5) * down);
         const values = pixels.all(x, y);
         values.forEach((value, i) => {
           const text = Math.abs(value) >= 1e5 ? value.toExponential(1) : String(Number(value.toPrecision(3)));

@@ -4,7 +4,7 @@ import { imageOf, readInputs } from "./node_inputs";
 import type { Pictures } from "./pictures";
 import type { Pixels } from "./pixels";
 import { displayCurve } from "./shade";
-import type { Store } from "./state";
+import { pictureSize, samePlace, type Store } from "./state";
 import { findTaps, meanOf } from "./taps";
 import { find, make, valueText } from "./text";
 import { describeWeights, type Weights } from "./weights";
@@ -47,12 +47,8 @@ export class Story {
     return { image, values: pixels.all(x, y) };
   }
   /** The same place in an image of another size. */
-  private place([x, y]: [number, number], pixels: Pixels): [number, number] {
-    const shown = this.store.report.images[this.store.state.left]!;
-    const number = Object.values(shown.frames)[0];
-    const full = number === undefined ? pixels.about : this.store.report.packed[number]!;
-    const scale = (at: number, size: number, of: number) => Math.min(size - 1, Math.floor((at * size) / of));
-    return [scale(x, pixels.width, full.width), scale(y, pixels.height, full.height)];
+  private place(pixel: [number, number], pixels: Pixels): [number, number] {
+    return samePlace(pixel, pictureSize(this.store.report, this.store.state), pixels);
   }
 
   private showing: Promise<void> = Promise.resolve();
@@ -83,7 +79,7 @@ export class Story {
     }
     const rows = await this.rows(graph, frame);
     if (turn !== this.turn) return;
-    const head = make("tr", {}, ...["Pass", "Yields", "Value", ""].map((text) => make("th", { scope: "col" }, text)));
+    const head = make("tr", {}, ...["Pass", "Yields", "Value"].map((text) => make("th", { scope: "col" }, text)), make("th", { scope: "col" }, make("span", { class: "hidden" }, "Color")));
     const table = make("table", { class: "story" }, make("thead", {}, head), make("tbody", {}, ...rows));
     body.replaceChildren(this.choice(frame), make("div", { class: "scroll" }, table));
   }
@@ -114,7 +110,7 @@ export class Story {
         const isLength = output.type === "scalar" && /length/.test(output.port);
         const first = make("th", { scope: "row", title: node.doc || node.summary });
         first.append(make("b", {}, node.name), " ", make("small", {}, node.pass));
-        entries.push({ first, port: isLength ? `${output.port} (frames of history)` : this.portText(output), image: imageOf(report, this.graph, output), isLength, node });
+        entries.push({ first, port: isLength ? `${output.port} (frames of history)` : this.portText(node, output), image: imageOf(report, this.graph, output), isLength, node });
       }
     const reference = report.images.find((image) => image.kind === "reference");
     entries.push({ first: make("th", { scope: "row" }, "reference"), port: "", image: reference });
@@ -168,8 +164,9 @@ export class Story {
     const node = this.store.report.graphs[graph]!.nodes.find((other) => other.name === name)!;
     return this.weights(node, this.frame!, [x, y]);
   }
-  private portText(output: NodeOutput): string {
-    return output.result ? `${output.port} → output ${output.result}` : output.port;
+  private portText(node: GraphNode, output: NodeOutput): string {
+    const port = output.name.slice(node.name.length + 1); // "history[1]" of a port of several images
+    return output.result ? `${port} → output ${output.result}` : port;
   }
   private cells({ image, values }: Value): HTMLElement[] {
     const numbers = make("td", { class: "number" }, make("code", {}, values.map(valueText).join("  ")));

@@ -2,6 +2,7 @@
 // They are made of what the report holds of the pass's inputs; whoever shows them compares what they give with what the pass gave.
 import type { GraphNode } from "./data";
 import { Filter, type Found, type Inputs, mean, type Tap } from "./filter";
+import means from "./means.json";
 import type { Pixels } from "./pixels";
 import { gaussian, jointBilateral, varianceBlur } from "./taps_blur";
 import { nlm } from "./taps_nlm";
@@ -17,23 +18,30 @@ export interface Taps {
   isLimited: boolean; // afterwards, to what neighbors make plausible
 }
 
-/** Of each pass that is a mean: the input that it is a mean of, the output that is the mean, and its weights. */
-const filters: Record<string, { port: string; output?: string; make: (filter: Filter) => Found }> = {
-  atrous: { port: "color", make: atrous },
-  bilateral: { port: "color", make: jointBilateral },
-  gaussian: { port: "image", make: gaussian },
-  history_fix: { port: "image", make: historyFix },
-  joint_bilateral: { port: "color", make: jointBilateral },
-  mix: { port: "a", output: "image", make: mix },
-  moments: { port: "color", output: "moments", make: moments },
-  nlm: { port: "color", make: nlm },
-  reproject: { port: "history", make: reproject },
-  scale: { port: "image", make: scale },
-  taa: { port: "color", make: taa },
-  temporal_blend: { port: "color", make: temporalBlend },
-  variance: { port: "color", make: variance },
-  variance_blur: { port: "variance", make: varianceBlur },
-  window: { port: "color", make: window },
+interface Mean {
+  port: string; // that it is a mean of
+  output?: string; // that is the mean; of the same name where none is told
+}
+/** Passes that are means. quell keeps exactly what these read and yield: the file is built into it, too. */
+const filters: Record<string, Mean> = means;
+
+/** The weights of each of them. */
+const makers: Record<keyof typeof means, (filter: Filter) => Found> = {
+  atrous,
+  bilateral: jointBilateral,
+  gaussian,
+  history_fix: historyFix,
+  joint_bilateral: jointBilateral,
+  mix,
+  moments,
+  nlm,
+  reproject,
+  scale,
+  taa,
+  temporal_blend: temporalBlend,
+  variance,
+  variance_blur: varianceBlur,
+  window,
 };
 
 /** Why other passes that look around or back have no weights. */
@@ -66,10 +74,10 @@ export function meanOf(node: GraphNode): { output: string } | { why: string } | 
 
 /** The weights at a pixel of what the node yields, an image of that size; or why there are none. */
 export function findTaps(node: GraphNode, inputs: Inputs, [x, y]: [number, number], size: Pixels): Taps | string {
-  const { port, make } = filters[node.pass]!;
+  const { port } = filters[node.pass]!;
   const image = inputs.list(port)[0];
   if (!image) return `there is no '${port}' in this frame`;
-  const found = make(new Filter(node, inputs, x, y, image, size));
+  const found = makers[node.pass as keyof typeof means](new Filter(node, inputs, x, y, image, size));
   if (typeof found === "string") return found;
   const { taps, center, limit } = Array.isArray(found) ? { taps: found, center: undefined, limit: undefined } : found;
   const sum = taps.reduce((total, tap) => total + tap.weight, 0);

@@ -1,5 +1,10 @@
 // Which part of the picture is seen: zoom and place, in CSS pixels of the canvas.
 
+/** Pixels of the display in a CSS pixel. */
+export function displayRatio(): number {
+  return window.devicePixelRatio || 1;
+}
+
 export class View {
   zoom = 1; // CSS pixels a pixel
   x = 0; // the picture's point in the middle of the pane, in pixels
@@ -31,7 +36,7 @@ export class View {
   }
   /** Zooms about a point of the pane, which stays where it is. */
   zoomTo(zoom: number, paneX = this.paneWidth / 2, paneY = this.paneHeight / 2) {
-    const next = Math.min(96, Math.max(Math.min(this.fitZoom, 1), zoom));
+    const next = Math.min(96, Math.max(Math.min(this.fitZoom, 1 / displayRatio()), zoom));
     const [atX, atY] = this.toPicture(paneX, paneY);
     this.isFit = next === this.fitZoom;
     this.zoom = next;

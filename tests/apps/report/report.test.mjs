@@ -249,6 +249,121 @@ test("a pixel's story tells what each pass yields, and how long its history is",
   await report.end();
 });
 
+test("outputs of one port are told apart in a pixel's story", async () => {
+  const report = await open();
+  await choosePixel(report, 160, 90);
+  const yields = await report.page.locator("#story tbody tr:not(.weights) td:nth-child(2)").allTextContents();
+  assert.deepEqual(yields.filter((text) => text.startsWith("history")), ["history[0]", "history[1]", "history[2]"]);
+  await report.end();
+});
+
+test("values stay those of what was chosen last, however late others come", async () => {
+  const report = await open();
+  const { page } = report;
+  await choosePixel(report, 172, 63);
+  const want = await page.textContent("#readout");
+  const names = await page.evaluate(async () => {
+    const read = Response.prototype.arrayBuffer;
+    let isAsked = false;
+    Response.prototype.arrayBuffer = async function () {
+      isAsked = true;
+      await new Promise((done) => setTimeout(done, 300));
+      return read.call(this);
+    };
+    const press = (digit) => document.dispatchEvent(new KeyboardEvent("keydown", { key: digit, code: `Digit${digit}`, bubbles: true }));
+    press("3"); // which was not read yet
+    press("1");
+    await new Promise((done) => setTimeout(done, 900));
+    Response.prototype.arrayBuffer = read;
+    return { isAsked, left: document.getElementById("left").selectedOptions[0].text };
+  });
+  assert.deepEqual(names, { isAsked: true, left: "noisy (color)" });
+  assert.equal(await page.textContent("#readout"), want);
+  await report.end();
+});
+
+test("images of other sizes are read at the same place", async () => {
+  const graph = {
+    quell: 1,
+    inputs: { color: "color" },
+    nodes: { half: { pass: "scale", in: { image: "color" } }, double: { pass: "scale", in: { image: "half.image" }, params: { to: "double" } } },
+    outputs: { color: "double.image", small: "half.image" },
+  };
+  writeFileSync(join(folder, "half.json"), JSON.stringify(graph));
+  run("report", sample, "half.json", "--frames", "1", "-o", "half.html");
+  const report = await open("half.html");
+  await report.page.selectOption("#left", { label: "half: color" });
+  await report.page.selectOption("#right", { label: "half: small" });
+  await choosePixel(report, 200, 120);
+  const beside = await report.values("half: small");
+  await report.press("s", ...Array(6).fill("+"));
+  const zoomed = await report.picture();
+  await report.page.selectOption("#left", { label: "half: small" });
+  await report.ready();
+  assert.match(await report.page.textContent("#readout"), /x 100, y 60/);
+  assert.deepEqual(await report.values("half: small"), beside);
+  assert.notEqual(await report.picture(), zoomed);
+  await report.page.selectOption("#left", { label: "half: color" });
+  await report.ready();
+  assert.match(await report.page.textContent("#readout"), /x 20[01], y 12[01]/);
+  await report.end();
+});
+
+test("1:1 shows a pixel on each of the display's, however dense that is", async () => {
+  const report = await open("report.html", { deviceScaleFactor: 3 });
+  await report.page.click("#actual");
+  await report.ready();
+  assert.equal(await report.page.textContent("#zoom-text"), "100 %");
+  await report.end();
+});
+
+test("keys that other keyboards have behind AltGr mean what is printed on them", async () => {
+  const report = await open();
+  await report.page.evaluate(() => {
+    // ] of a German keyboard, as Linux and as Windows tell it.
+    for (const more of [{}, { ctrlKey: true, altKey: true }])
+      document.dispatchEvent(new KeyboardEvent("keydown", { key: "]", code: "Digit5", modifierAltGraph: true, bubbles: true, ...more }));
+  });
+  await report.ready();
+  assert.equal(await report.page.textContent("#exposure-text"), "+1");
+  await report.page.evaluate(() => document.dispatchEvent(new KeyboardEvent("keydown", { key: "x", code: "KeyX", ctrlKey: true, bubbles: true })));
+  await report.ready();
+  const chosen = await report.page.evaluate(() => ["left", "right"].map((id) => document.getElementById(id).selectedOptions[0].text));
+  assert.deepEqual(chosen, ["noisy (color)", "svgf"]);
+  await report.end();
+});
+
+test("what is to be copied is selected where there is no clipboard", async () => {
+  const report = await open();
+  await report.page.evaluate(() => Object.defineProperty(navigator, "clipboard", { value: undefined }));
+  await report.page.click("#provenance .copy button");
+  assert.match(await report.page.evaluate(() => String(getSelection())), /quell report .*graphs\/sample games202 svgf --frames 1-3 -o report.html/);
+  await report.end();
+});
+
+test("the time of a frame is the same in the table and above the bars", async () => {
+  const report = await open();
+  const rows = await report.page.locator("#figures tbody tr td:nth-last-child(2)").allTextContents();
+  const heads = await report.page.locator("#times .grid h3 small").allTextContents();
+  assert.deepEqual(heads.map((text) => text.trim()), rows.slice(1).map((text) => `${text} a frame`));
+  await report.end();
+});
+
+test("a frame without a figure leaves a gap in the lines", async () => {
+  mkdirSync(join(folder, "gap"));
+  for (const frame of [1, 2, 3, 4, 5])
+    for (const [from, to] of [["color_1spp", "color"], ["reference", "reference"]]) cpSync(join(sample, `${from}.000${frame}.exr`), join(folder, `gap/${to}.000${frame}.exr`));
+  writeFileSync(join(folder, "gap/reference.0003.exr"), "no image");
+  const graph = { quell: 1, inputs: { color: "color" }, nodes: { blur: { pass: "gaussian", in: { image: "color" } } }, outputs: { color: "blur.image" } };
+  writeFileSync(join(folder, "blur.json"), JSON.stringify(graph));
+  run("report", "gap", "blur.json", "--metrics", "psnr", "--inner", "none", "-o", "gap.html");
+  const report = await open("gap.html");
+  const lines = await report.page.locator("#plots .plot [aria-label=line] path").evaluateAll((paths) => paths.map((path) => path.getAttribute("d")));
+  assert.deepEqual(lines.map((line) => line.match(/M/g).length), [2, 2]);
+  assert.equal(await report.page.locator("#plots .plot [aria-label=dot] circle").count(), 8);
+  await report.end();
+});
+
 test("figures can be sorted, plots and drawings are complete", async () => {
   const report = await open();
   const { page } = report;
