@@ -114,9 +114,12 @@ std::size_t released_bytes(const Plan& plan, const PlannedTurn& turn) {
   std::size_t bytes = 0;
   for (const int position : turn.nodes) {
     const PlannedNode& planned = plan.nodes[static_cast<std::size_t>(position)];
-    for (const int input : planned.in_place_of)
-      if (input >= 0)
-        for (const Edge& edge : node_of(plan, planned).inputs[static_cast<std::size_t>(input)]) taken.insert(edge.from);
+    for (std::size_t port = 0; port < planned.in_place_of.size(); ++port) {
+      if (planned.in_place_of[port] < 0) continue;
+      const std::vector<Edge>& edges = node_of(plan, planned).inputs[static_cast<std::size_t>(planned.in_place_of[port])];
+      for (std::size_t item = 0; item < edges.size(); ++item)  // inner outputs have no buffer, and take over none
+        if (!plan.is_inner({planned.node, static_cast<int>(port), static_cast<int>(item)})) taken.insert(edges[item].from);
+    }
   }
   for (const int position : turn.nodes)
     for (const Endpoint& endpoint : plan.nodes[static_cast<std::size_t>(position)].last_uses)

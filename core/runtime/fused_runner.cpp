@@ -157,6 +157,7 @@ struct FusedRunner::State {
     const auto start = Clock::now();
     ++serial, frame = number, tables = &given;
     failures.assign(members.size(), {});
+    forget_seconds();
     place_outputs();
     Buffer windows, scratch;
     if (window_bytes > 0) windows = pool.acquire(window_bytes * workers.size());
@@ -209,13 +210,19 @@ struct FusedRunner::State {
     }
   }
 
-  void tell_seconds(double all) {
+  // A run that was cancelled has not told its own.
+  void forget_seconds() const {
+    for (const std::unique_ptr<Worker>& worker : workers)
+      for (Worker::Node& node : worker->nodes) node.seconds = 0;
+  }
+
+  void tell_seconds(double all) const {
     double sum = 0;
     for (const std::unique_ptr<Worker>& worker : workers)
       for (const Worker::Node& node : worker->nodes) sum += node.seconds;
     for (std::size_t member = 0; member < members.size(); ++member) {
       double own = 0;
-      for (const std::unique_ptr<Worker>& worker : workers) own += std::exchange(worker->nodes[member].seconds, 0);
+      for (const std::unique_ptr<Worker>& worker : workers) own += worker->nodes[member].seconds;
       tables->seconds[at(members[member].position)] = sum > 0 ? all * own / sum : 0;
     }
   }
@@ -305,7 +312,7 @@ struct FusedRunner::State {
     worker.host.set_rows(from, to, height);
     const quell_status status = members[member].pass->process(worker.host.raw(), node.exec);
     node.seconds += std::chrono::duration<double>(Clock::now() - start).count();
-    if (status != QUELL_OK) return false;
+    if (status != QUELL_OK || worker.host.has_own_error()) return false;
     node.made = to;
     for (const std::size_t value : members[member].values) {
       worker.windows[value].made = to;

@@ -25,6 +25,8 @@ class RowsHost {
     is_own_error_ = false;
   }
   const quell_host& raw() const { return raw_; }
+  /// Whether a loop could not be run, so that rows are missing even where the pass does not mind.
+  bool has_own_error() const { return is_own_error_; }
   std::string take_error() { return std::exchange(error_, {}); }
 
  private:

@@ -1,7 +1,9 @@
 // --memory as a promise about the whole process.
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <regex>
+#include <thread>
 
 #include "quell/sequence/file_sink.h"
 #include "tests/apps/sample.h"
@@ -51,6 +53,30 @@ TEST_F(Memory, StaysBelowThePromise) {
     RecordProperty("resident_MiB_" + std::to_string(factor), std::to_string(outcome.peak_resident / kMiB));
   }
   EXPECT_EQ(svgf(std::to_string(smallest - 16) + "M").code, 33);
+}
+
+TEST_F(Memory, StaysTheSameHoweverLongTheSequenceIs) {
+  constexpr std::size_t kFrames = 1200, kWarm = 100;
+  make_shot(kFrames);
+  write_file("loop.json", R"({"quell": 1, "inputs": {"color": "color"},
+    "nodes": {"blend": {"pass": "temporal_blend",
+              "in": {"color": "color", "history": {"from": "blend.color", "delay": 1, "initial": "none"}}}},
+    "outputs": {"color": "blend.color"}})");
+  Program program({"run", text("loop.json"), text("shot"), "-o", text("out"), "-q"});
+  long warm = 0, later = 0, seen = 0;
+  for (std::size_t done = 0; done < kFrames; done = list("out").size()) {
+    const long resident = program.resident();
+    if (resident == 0) break;  // it is over
+    long& largest = done <= kWarm ? warm : later;
+    largest = std::max(largest, resident);
+    seen += done > kWarm ? 1 : 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_EQ(program.finish().code, 0);
+  EXPECT_GT(seen, 5) << "the run was too short to be looked at";
+  EXPECT_LE(later, warm + 4 * kMiB);
+  RecordProperty("resident_KiB_after_100_frames", std::to_string(warm / kKiB));
+  RecordProperty("resident_KiB_later", std::to_string(later / kKiB));
 }
 
 }  // namespace

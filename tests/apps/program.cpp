@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <stdexcept>
 
 extern char** environ;
@@ -125,6 +126,13 @@ bool Program::wait_for_error_text(const std::string& text) {
 }
 
 void Program::send(int signal) const { kill(pid_, signal); }
+
+long Program::resident() const {
+  std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmRSS:")) return std::stol(line.substr(6)) * 1024;
+  return 0;
+}
 
 Outcome Program::finish() {
   while (read_some()) {}

@@ -26,6 +26,8 @@ class Program {
   /// Reads on until the error stream contains the text; false when the program ends before.
   bool wait_for_error_text(const std::string& text);
   void send(int signal) const;
+  /// Bytes that it holds in memory now; 0 when it is gone.
+  long resident() const;
   Outcome finish();
 
  private:

@@ -7,35 +7,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-/// Works row by row: reads `color` around a pixel, and `more` at it.
-struct RowsParams {
-  int radius = 0;
-  bool in_place = false;
-  void describe(auto&& field) {
-    field("radius", radius, Range<int>{-1, 99}, "px", "Of 'color'.");
-    field("in_place", in_place, "Write over 'color'.");
-  }
-};
-class Rows : public Idle {
- public:
-  explicit Rows(const RowsParams& params) : params_(params) {}
-  void infer(Inference& inference) const override {
-    inference.set_by_rows();
-    inference.set_radius("color", params_.radius);
-    if (params_.in_place) inference.set_in_place("color", "color");
-  }
-
- private:
-  RowsParams params_;
-};
-const quell_pass_desc* rows() {
-  return detail::Descriptor::make<Rows, RowsParams>(
-             {.id = "rows",
-              .inputs = {{"color", kAnyImage}, {.name = "more", .types = kAnyImage, .optional = true, .array = true}},
-              .outputs = {{.name = "color", .same_as = "color"}}})
-      .get();
-}
-
 const InputShapes kShapes{{"color", image(100, 300)}};
 
 Plan plan_of(Builder& builder, const InputShapes& shapes = kShapes, const std::vector<std::string>& dumps = {},
@@ -129,6 +100,17 @@ TEST(Fusion, StopsWherePixelsFromFarOffAreRead) {
   }
 }
 
+// What runs ahead is computed twice around each band, and is kept meanwhile.
+TEST(Fusion, CutsAChainBeforeItsNodesRunFarAhead) {
+  Builder builder;
+  builder.input("color").node("a", rows(), {{"color", {"color"}}});
+  for (const char* name : {"b", "c", "d", "e", "f"})
+    builder.node(name, rows(), {{"color", {std::string(1, static_cast<char>(*name - 1)) + ".color"}}}, {{"radius", 2}});
+  const Plan plan = plan_of(builder.output("f.color"));
+  EXPECT_THAT(turns(plan), ElementsAre("a+b+c+d", "e+f"));
+  EXPECT_THAT(plan.turns[0].ahead, ElementsAre(6, 4, 2, 0));
+}
+
 TEST(Fusion, StopsAtPassesThatDoNotWorkRowByRow) {
   Builder builder;
   builder.input("color").node("a", rows(), {{"color", {"color"}}}).node("far", mix(), {{"color", {"a.color"}}});
@@ -167,6 +149,17 @@ TEST(Fusion, WritesOverAnInputThatNobodyElseReads) {
   const Plan plan = plan_of(builder);
   EXPECT_EQ(planned(plan, "a").in_place_of, std::vector<int>{0});
   EXPECT_EQ(planned(plan, "b").in_place_of, std::vector<int>{-1}) << "what fused nodes yield stays as it is";
+}
+
+// What passes row by row has no buffer that could take the place of another one.
+TEST(Fusion, CountsAnInputThatIsReadIntoAWindowUntilItIsReleased) {
+  Builder builder;
+  builder.input("color").node("far", mix(), {{"color", {"color"}}});
+  builder.node("a", rows(), {{"color", {"far.color"}}}, {{"in_place", 1}}).node("b", rows(), {{"color", {"a.color"}}});
+  builder.node("last", mix(), {{"color", {"b.color"}}}).output("last.color");
+  const Plan plan = plan_of(builder);
+  EXPECT_THAT(turns(plan), ElementsAre("far", "a+b", "last"));
+  EXPECT_EQ(plan.alive_bytes[3], 2 * bytes(100, 300, 3) + bytes(100, 300, 1)) << "far.color is gone";
 }
 
 TEST(Fusion, LeavesAnInputAsItIsThatAnotherOneReads) {

@@ -53,6 +53,35 @@ inline const quell_pass_desc* mix() {
       .get();
 }
 
+/// Works row by row: reads `color` around a pixel, and `more` at it.
+struct RowsParams {
+  int radius = 0;
+  bool in_place = false;
+  void describe(auto&& field) {
+    field("radius", radius, Range<int>{-1, 99}, "px", "Of 'color'.");
+    field("in_place", in_place, "Write over 'color'.");
+  }
+};
+class Rows : public Idle {
+ public:
+  explicit Rows(const RowsParams& params) : params_(params) {}
+  void infer(Inference& inference) const override {
+    inference.set_by_rows();
+    inference.set_radius("color", params_.radius);
+    if (params_.in_place) inference.set_in_place("color", "color");
+  }
+
+ private:
+  RowsParams params_;
+};
+inline const quell_pass_desc* rows() {
+  return detail::Descriptor::make<Rows, RowsParams>(
+             {.id = "rows",
+              .inputs = {{"color", kAnyImage}, {.name = "more", .types = kAnyImage, .optional = true, .array = true}},
+              .outputs = {{.name = "color", .same_as = "color"}}})
+      .get();
+}
+
 /// Averages with what it made before, where there is something.
 struct NoParams {};
 class Blend : public Idle {

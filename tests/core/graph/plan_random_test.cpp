@@ -18,25 +18,35 @@ class Dice {
   std::mt19937 engine_;
 };
 
-// All images have one size, so that any can be joined with any; 'weight' has fewer planes, depth too.
-std::string pick(Dice& dice, int nodes) {
+// All images have one size, so that any can be joined with any; 'weight' has fewer planes, depth too. Nodes of 'rows' have none.
+std::string pick(Dice& dice, int nodes, const std::vector<bool>& is_rows) {
   if (nodes == 0 || dice.chance(20)) return dice.chance(50) ? "color" : "depth";
-  return "n" + std::to_string(dice.below(nodes)) + (dice.chance(70) ? ".color" : ".weight");
+  const int node = dice.below(nodes);
+  return "n" + std::to_string(node) + (dice.chance(70) || is_rows[static_cast<std::size_t>(node)] ? ".color" : ".weight");
 }
 
-std::shared_ptr<const Graph> random_graph(unsigned seed) {
+// `by_rows`: in percent, the nodes that may be fused.
+std::shared_ptr<const Graph> random_graph(unsigned seed, int by_rows = 0) {
   Dice dice(seed);
   Builder builder;
   builder.input("color").input("depth", QUELL_TYPE_DEPTH, true);
   const int nodes = 1 + dice.below(9);
+  std::vector<bool> is_rows(static_cast<std::size_t>(nodes));
+  for (int n = 0; by_rows > 0 && n < nodes; ++n) is_rows[static_cast<std::size_t>(n)] = dice.chance(by_rows);
   for (int n = 0; n < nodes; ++n) {
-    Wires wires{{"color", {pick(dice, n)}}};
+    Wires wires{{"color", {pick(dice, n, is_rows)}}};
     for (int more = dice.below(4); more > 0; --more) {
-      Wire wire = pick(dice, n);
-      if (dice.chance(30)) wire = Wire(pick(dice, nodes), 1 + dice.below(3), dice.chance(30) ? pick(dice, n) : "");
+      Wire wire = pick(dice, n, is_rows);
+      if (dice.chance(30))
+        wire = Wire(pick(dice, nodes, is_rows), 1 + dice.below(3), dice.chance(30) ? pick(dice, n, is_rows) : "");
       wires["more"].push_back(wire);
     }
-    builder.node("n" + std::to_string(n), mix(), wires, {{"in_place", dice.chance(70)}, {"scratch", dice.below(3) * 50000}});
+    const bool in_place = dice.chance(70);
+    const int scratch = dice.below(3) * 50000;
+    if (is_rows[static_cast<std::size_t>(n)])
+      builder.node("n" + std::to_string(n), rows(), wires, {{"in_place", in_place}, {"radius", in_place ? 0 : dice.below(4)}});
+    else
+      builder.node("n" + std::to_string(n), mix(), wires, {{"in_place", in_place}, {"scratch", scratch}});
   }
   for (int outputs = 1 + dice.below(3); outputs > 0; --outputs)
     builder.output("n" + std::to_string(dice.below(nodes)) + ".color");
@@ -52,7 +62,7 @@ class Simulation {
     for (std::size_t i = 0; i < graph_.inputs.size(); ++i)
       if (plan_.input_used[i]) write({-1, static_cast<int>(i), 0}, next_buffer_++);
     most_bytes_ = alive_bytes();
-    for (const PlannedNode& planned : plan_.nodes) step(planned);
+    for (const PlannedTurn& turn : plan_.turns) step(turn);
     for (const int output : plan_.outputs) expect_intact(graph_.outputs[static_cast<std::size_t>(output)].from, "an output");
     for (const PlannedHistory& history : plan_.histories) expect_intact(history.from, "history");
   }
@@ -60,23 +70,64 @@ class Simulation {
   std::size_t left_bytes() const { return alive_bytes(); }
 
  private:
-  void step(const PlannedNode& planned) {
-    const Node& node = graph_.nodes[static_cast<std::size_t>(planned.node)];
-    for (const auto& port : node.inputs)
-      for (const Edge& edge : port) {
-        if (edge.delay == 0 && plan_.shape(edge.from).present) expect_intact(edge.from, node.name);
-        const Endpoint& initial = edge.initial.endpoint;
-        if (edge.initial.kind == Initial::Kind::endpoint && plan_.shape(initial).present) expect_intact(initial, node.name);
-      }
-    for (std::size_t port = 0; port < planned.outputs.size(); ++port) {
-      const int place = planned.in_place_of[port];
-      const Endpoint endpoint{planned.node, static_cast<int>(port), 0};
-      write(endpoint, place < 0 ? next_buffer_++ : buffers_.at(node.inputs[static_cast<std::size_t>(place)][0].from));
+  // Fused nodes read and write in turns: what one writes over, no other may read.
+  void step(const PlannedTurn& turn) {
+    for (const int position : turn.nodes)
+      for (const Endpoint& endpoint : reads(position)) expect_intact(endpoint, name(position));
+    std::size_t scratch = 0;
+    for (const int position : turn.nodes) {
+      write_outputs(turn, position);
+      scratch += plan_.nodes[static_cast<std::size_t>(position)].scratch_bytes;
     }
-    most_bytes_ = std::max(most_bytes_, alive_bytes() + planned.scratch_bytes);
-    for (const Endpoint& endpoint : planned.last_uses) {
+    most_bytes_ = std::max(most_bytes_, alive_bytes() + scratch);
+    for (const Endpoint& endpoint : plan_.nodes[static_cast<std::size_t>(turn.nodes.back())].last_uses) {
       EXPECT_TRUE(buffers_.contains(endpoint)) << graph_.describe(endpoint) << " is released twice";
       buffers_.erase(endpoint);
+    }
+  }
+
+  const std::string& name(int position) const { return node(position).name; }
+  const Node& node(int position) const {
+    return graph_.nodes[static_cast<std::size_t>(plan_.nodes[static_cast<std::size_t>(position)].node)];
+  }
+
+  // What a node reads in the same frame of what has a buffer.
+  std::vector<Endpoint> reads(int position) const {
+    std::vector<Endpoint> all;
+    const auto add = [&](const Endpoint& endpoint) {
+      if (plan_.shape(endpoint).present && !is_of_turn(position, endpoint)) all.push_back(endpoint);
+    };
+    for (const auto& port : node(position).inputs)
+      for (const Edge& edge : port) {
+        if (edge.delay == 0) add(edge.from);
+        if (edge.initial.kind == Initial::Kind::endpoint) add(edge.initial.endpoint);
+      }
+    return all;
+  }
+
+  // Whether a node that runs together with this one yields it.
+  bool is_of_turn(int position, const Endpoint& endpoint) const {
+    for (const PlannedTurn& turn : plan_.turns)
+      if (std::ranges::find(turn.nodes, position) != turn.nodes.end())
+        return std::ranges::any_of(turn.nodes,
+                                   [&](int other) { return plan_.nodes[static_cast<std::size_t>(other)].node == endpoint.node; });
+    return false;
+  }
+
+  void write_outputs(const PlannedTurn& turn, int position) {
+    const PlannedNode& planned = plan_.nodes[static_cast<std::size_t>(position)];
+    for (std::size_t port = 0; port < planned.outputs.size(); ++port) {
+      const Endpoint endpoint{planned.node, static_cast<int>(port), 0};
+      if (plan_.is_inner(endpoint)) continue;
+      if (planned.in_place_of[port] < 0) {
+        write(endpoint, next_buffer_++);
+        continue;
+      }
+      const Endpoint& place = node(position).inputs[static_cast<std::size_t>(planned.in_place_of[port])][0].from;
+      for (const int other : turn.nodes)
+        EXPECT_TRUE(other == position || std::ranges::count(reads(other), place) == 0)
+            << name(other) << " reads " << graph_.describe(place) << " while " << name(position) << " writes over it";
+      write(endpoint, buffers_.at(place));
     }
   }
 
@@ -222,6 +273,27 @@ TEST_P(RandomPlan, NeverReadsWhatIsGoneAndCountsWhatIsThere) {
   EXPECT_GT(planned_graphs, 200);
   EXPECT_GT(in_place, 100);
   EXPECT_EQ(refused > 0, !GetParam()) << "only an absent input makes a graph impossible";
+}
+
+TEST(RandomFusedPlan, NeverReadsWhatIsGoneAndCountsWhatIsThere) {
+  int fused = 0, fused_in_place = 0, inner = 0;
+  for (unsigned seed = 0; seed < 3000 && !testing::Test::HasFailure(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::shared_ptr<const Graph> graph = random_graph(seed, 60);
+    const Plan plan = make_plan(graph, {{"color", image(64, 32)}, {"depth", image(64, 32, QUELL_TYPE_DEPTH)}});
+    Simulation simulation(plan);
+    simulation.run();
+    EXPECT_EQ(simulation.most_bytes(), plan.frame_bytes);
+    inner += static_cast<int>(plan.inner.size());
+    for (const PlannedTurn& turn : plan.turns) {
+      fused += turn.is_fused();
+      for (const int position : turn.nodes)
+        fused_in_place += turn.is_fused() && plan.nodes[static_cast<std::size_t>(position)].in_place_of[0] >= 0;
+    }
+  }
+  EXPECT_GT(fused, 100);
+  EXPECT_GT(fused_in_place, 100);
+  EXPECT_GT(inner, 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(WithDepth, RandomPlan, testing::Bool(), [](const auto& depth) { return depth.param ? "Yes" : "No"; });

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <sstream>
+#include <thread>
 
 #include "quell/runtime/session.h"
 #include "quell/sdk/pass.h"
@@ -36,6 +39,16 @@ class Liar final : public Half {
   using Half::Half;
   int loop_height(int height) const override { return height / 2; }
 };
+/// Its first call takes 300 ms, the others 1 ms.
+class Slow final : public Half {
+ public:
+  using Half::Half;
+  static inline std::atomic<int> calls = 0;
+  int loop_height(int height) const override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(calls++ == 0 ? 300 : 1));
+    return height;
+  }
+};
 template <class ConcretePass>
 const quell_pass_desc* describe_pass(const char* id) {
   return detail::Descriptor::make<ConcretePass, NoParams>(
@@ -43,17 +56,31 @@ const quell_pass_desc* describe_pass(const char* id) {
       .get();
 }
 
-std::shared_ptr<const Graph> chain(const char* second) {
+// Does not ask what became of its loop.
+const quell_pass_desc* deaf() {
+  static quell_pass_desc desc = *describe_pass<Half>("half");
+  desc.id = "deaf";
+  desc.process = [](const void*, const quell_host* host, const quell_exec*) {
+    host->parallel_for(
+        host, 0, 7, 1, [](void*, std::int64_t, std::int64_t, std::int64_t, std::uint32_t) { return QUELL_OK; }, nullptr);
+    return QUELL_OK;
+  };
+  return &desc;
+}
+
+std::shared_ptr<const Graph> chain(const char* second, const char* third = "half") {
   static const Registry registry = [] {
     Registry passes;
-    const quell_pass_desc* all[] = {describe_pass<Half>("half"), describe_pass<Liar>("liar")};
-    passes.add(all, 2);
+    const quell_pass_desc* all[] = {describe_pass<Half>("half"), describe_pass<Liar>("liar"), describe_pass<Slow>("slow"),
+                                    deaf()};
+    passes.add(all, 4);
     return passes;
   }();
   const std::string text = R"({"quell": 1, "inputs": {"color": "color"},
     "nodes": {"a": {"pass": "half", "in": {"color": "color"}}, "b": {"pass": ")" +
                            std::string(second) + R"(", "in": {"color": "a.color"}},
-              "c": {"pass": "half", "in": {"color": "a.color"}}},
+              "c": {"pass": ")" +
+                           third + R"(", "in": {"color": "a.color"}}},
     "outputs": {"b": "b.color", "c": "c.color"}})";
   return parse_graph(std::make_shared<const SourceText>(SourceText{"chain.json", text}), registry);
 }
@@ -89,6 +116,18 @@ TEST(Fused, NodesEachHaveTheirTime) {
   EXPECT_LE(sum, reports[0].seconds) << "which has room for nothing else";
 }
 
+TEST(Fused, NodesHaveNothingOfTheTimeOfARunThatWasCancelled) {
+  Ones source;
+  Nowhere sink;
+  std::atomic<bool> cancels = true;
+  Session session(chain("slow", "slow"), {.threads = 1, .cancelled = [&] { return cancels && Slow::calls > 0; }});
+  EXPECT_TRUE(session.run({1}, source, sink).empty());
+  cancels = false;
+  const std::vector<FrameReport> reports = session.run({2}, source, sink);
+  ASSERT_EQ(reports.size(), 1u);
+  EXPECT_GT(reports[0].node_seconds[2], reports[0].node_seconds[1] / 4) << "both do the same, as often";
+}
+
 TEST(Fused, NodesAreOneSliceOfTheTrace) {
   std::ostringstream text;
   Trace trace(text);
@@ -106,6 +145,14 @@ TEST(Fused, PassThatDoesNotWorkRowByRowIsTold) {
   EXPECT_FALSE(reports[0].ok);
   EXPECT_EQ(reports[0].node, "b");
   EXPECT_EQ(reports[0].error, "b: it said that it works row by row, but its loop does not go over the 100 rows of its outputs");
+}
+
+TEST(Fused, PassThatDoesNotMindWhatBecameOfItsLoopFailsTheSame) {
+  Ones source;
+  Nowhere sink;
+  const std::vector<FrameReport> reports = Session(chain("deaf"), {.threads = 2}).run({1}, source, sink);
+  EXPECT_FALSE(reports[0].ok) << "or rows would be handed out that nobody has written";
+  EXPECT_EQ(reports[0].node, "b");
 }
 
 }  // namespace

@@ -107,14 +107,49 @@ TEST_P(RandomGraphs, YieldTheSameWhereNothingButTheHistoryOfOtherFramesIsWanted)
     for (const std::int64_t frame : scene.frames)
       if (dice.chance(50)) history_only.insert(frame);
     const SessionOptions options = seed % 4 == 0 ? serial() : concurrent(setting(static_cast<int>(seed % kSettings)));
-    const Outcome got = run_for_history(checked, graph.inputs, scene, with_dumps(options, graph),
-                                        {history_only.begin(), history_only.end()});
+    const Outcome got =
+        run_for_history(checked, graph.inputs, scene, with_dumps(options, graph), {history_only.begin(), history_only.end()});
     EXPECT_EQ(got.reports.size(), scene.frames.size());
     for (const auto& [key, pictured] : got.pictures) EXPECT_FALSE(history_only.contains(key.second)) << key.second;
     for (const FrameReport& report : got.reports)
       EXPECT_EQ(report.history_only, history_only.contains(report.frame)) << report.frame;
     expect_same(without(got, history_only), without(run_alone(checked, scene, graph), history_only));
   }
+}
+
+// So tall that fused nodes that run ahead have several bands, whose rows meet in windows.
+Scene make_tall(Scene scene, Dice& dice) {
+  scene.size = {dice.from(1, 5), dice.from(60, 400)};
+  scene.frames.resize(4);
+  return scene;
+}
+
+int count_turns_in_bands(const std::shared_ptr<const Graph>& checked, const TestGraph& graph, const Scene& scene) {
+  PatternSource source(graph.inputs, scene);
+  InputShapes shapes;
+  for (const GraphInput& input : checked->inputs) shapes[input.name] = source.shape(input.name);
+  const Plan plan = make_plan(checked, shapes);
+  return static_cast<int>(std::ranges::count_if(plan.turns, [&](const PlannedTurn& turn) {
+    return turn.is_fused() && std::ranges::max(turn.ahead) > 0 && turn.band < scene.size.height;
+  }));
+}
+
+TEST_P(RandomGraphs, YieldTheSameFusedOrNotOverManyBands) {
+  int turns_in_bands = 0;
+  for (const unsigned seed : seeds(GetParam())) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const auto [drawn, graph] = draw_case(seed);
+    Dice dice(seed + 2000);
+    const Scene scene = make_tall(drawn, dice);
+    const auto checked = load(graph);
+    SessionOptions alone = with_dumps(serial(), graph);
+    alone.fuse = false;
+    const Outcome want = run(checked, graph.inputs, scene, alone);
+    for (const int threads : {1, 4})
+      expect_same(run(checked, graph.inputs, scene, with_dumps(concurrent({threads, 2}), graph)), want);
+    turns_in_bands += count_turns_in_bands(checked, graph, scene);
+  }
+  EXPECT_GT(turns_in_bands, 3) << "the graphs must be of a kind that tries what is tested";
 }
 
 INSTANTIATE_TEST_SUITE_P(Block, RandomGraphs, testing::Range(0, kBlocks));

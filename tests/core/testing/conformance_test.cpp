@@ -43,6 +43,11 @@ TEST(Conformance, FindsADependenceOnTheBands) {
   EXPECT_THAT(check_chunks(offender("chunks")), Contains(HasSubstr("with chunks of 1 rows")));
 }
 
+TEST(Conformance, FindsAPassThatDoesNotWorkRowByRow) {
+  for (const char* rows : {"1", "3"})
+    EXPECT_THAT(check_rows(offender("rows")), Contains(HasSubstr("when it runs on " + std::string(rows) + " rows at a time")));
+}
+
 TEST(Conformance, FindsADependenceOnTheOrderOfThreads) {
   // Bands in other numbers are found for certain, bands in another order most of the time.
   EXPECT_THAT(check_chunks(offender("threads")), ::testing::Not(IsEmpty()));

@@ -6,7 +6,7 @@
 namespace {
 using namespace quell;
 
-enum class Offence { none, radius, array, pixels, chunks, strides, in_place, memory, optional, threads };
+enum class Offence { none, radius, array, pixels, chunks, rows, strides, in_place, memory, optional, threads };
 
 struct Params {
   Offence offence = Offence::none;
@@ -17,6 +17,7 @@ struct Params {
                   {"array", "reads farther than it says, in an item of an array"},
                   {"pixels", "leaves a pixel unwritten"},
                   {"chunks", "depends on the bands"},
+                  {"rows", "depends on the bands although it works row by row"},
                   {"strides", "takes rows for dense"},
                   {"in_place", "reads a neighbor although it works in place"},
                   {"memory", "remembers the last frame"},
@@ -40,6 +41,7 @@ class Offender final : public Pass {
   void infer(Inference& about) const override {
     if (offence_ == Offence::in_place) about.set_in_place("color", "color");
     if (offence_ == Offence::chunks || offence_ == Offence::strides || offence_ == Offence::threads) about.set_unbounded("color");
+    if (offence_ == Offence::rows) about.set_unbounded("color"), about.set_by_rows();
   }
   void run(const Frame& frame) const override {
     const FloatImage color = frame.image("color");
@@ -65,7 +67,7 @@ class Offender final : public Pass {
   float value(const FloatImage& color, int x, int y, int c, int first_row) const {
     if ((offence_ == Offence::radius || offence_ == Offence::array) && x > 0) return color.at(x - 1, y, c);
     if (offence_ == Offence::in_place && x > 0) return color.at(x, y, c) + color.at(x - 1, y, c);
-    if (offence_ == Offence::chunks) return color.at(x, first_row, c);
+    if (offence_ == Offence::chunks || offence_ == Offence::rows) return color.at(x, first_row, c);
     if (offence_ == Offence::strides) return color.data[c * color.plane_stride + y * ((color.width + 15) / 16 + 1) * 16 + x];
     return color.at(x, y, c);
   }
