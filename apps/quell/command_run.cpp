@@ -41,7 +41,8 @@ struct Arguments {
   ReferenceArguments reference;
   CheckpointArguments checkpoint;
   std::vector<std::string> dumps;
-  std::optional<std::filesystem::path> log_json, trace;
+  RunLogFiles logs;
+  std::optional<std::filesystem::path> trace;
   std::optional<std::string> tev;
   std::optional<std::string> frames_per_second;
   bool dry_run = false, watch = false;
@@ -195,7 +196,7 @@ ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log,
   if (run.checkpoints && !tell_past_failures(*run.checkpoints) && code == kOk) code = kFramesFailed;
   if (run.checkpoints && !run.checkpoints->ok && code == kOk) code = kInternal;
   log.end(outcome, code);
-  return code;
+  return log.ok() || code != kOk ? code : kInternal;
 }
 
 /// Nothing without --reference.
@@ -295,12 +296,13 @@ ExitCode end_at_once(const Preparation& run, RunLog& log) {
   const ExitCode code = tell_past_failures(*run.checkpoints) ? kOk : kFramesFailed;
   const std::vector<FrameReport> none;
   log.end(RunOutcome{.job = run.job, .results = run.results, .reports = none}, code);
-  return code;
+  return log.ok() || code != kOk ? code : kInternal;
 }
 
 ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, Watch* watch = nullptr) {
   Preparation run = prepare(arguments, watch);
   run.checkpoints = prepare_checkpoints(arguments.checkpoint, arguments.sequence, run.job, run.options);
+  if (run.checkpoints) log.resume(run.checkpoints->past);
   if (run.job.frames.empty()) return end_at_once(run, log);
   const SessionOptions& options = run.options;
   const int threads = options.threads > 0 ? options.threads : available_threads();
@@ -321,9 +323,7 @@ ExitCode run_logged(const Arguments& arguments, RunLog& log, Console& console, W
   const ExitCode code = compute(run, trace, log, console, watch);
   run.measuring.reset();  // with the images that it holds
   if (watch) watch->last = std::move(run);
-  if (log.ok()) return code;
-  spdlog::error("--log-json: {} could not be written", arguments.log_json->string());
-  return code == kOk ? kInternal : code;
+  return code;
 }
 
 /// Runs, and again whenever the graph is saved, until a signal comes: between runs that is a good end.
@@ -355,7 +355,7 @@ ExitCode run(const Arguments& arguments, Console& console) {
   handle_interrupts();
   set_verbosity(arguments.verbosity.verbosity());
   pin_isa(arguments.isa);
-  RunLog log(arguments.dry_run ? std::nullopt : arguments.log_json);
+  RunLog log(arguments.dry_run ? RunLogFiles() : arguments.logs);
   try {
     return arguments.watch ? run_watching(arguments, log, console) : run_logged(arguments, log, console);
   } catch (const Error& error) {
@@ -377,7 +377,11 @@ void add_output_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--tev", arguments.tev, "Show images in a running tev, the viewer, too, as they are finished.")
       ->type_name("HOST:PORT")
       ->group(kOutputGroup);
-  app.add_option("--log-json", arguments.log_json, "Write what happens to a file, one JSON object a line, as it happens.")
+  app.add_option("--log-json", arguments.logs.lines, "Write what happens to a file, one JSON object a line, as it happens.")
+      ->type_name("FILE")
+      ->group(kOutputGroup);
+  app.add_option("--report", arguments.logs.report,
+                 "Write one JSON file about the whole run when it ends, well or not: every frame, with times, sizes and errors.")
       ->type_name("FILE")
       ->group(kOutputGroup);
   app.add_option("--trace", arguments.trace,
