@@ -144,7 +144,7 @@ ExitCode compute(Preparation& run, std::optional<TraceFile>& trace, RunLog& log,
   if (run.checkpoints && !tell_past_failures(*run.checkpoints) && code == kOk) code = kFramesFailed;
   if (run.checkpoints && !run.checkpoints->ok && code == kOk) code = kInternal;
   log.end(outcome, code);
-  return code;
+  return log.ok() || code != kOk ? code : kInternal;
 }
 
 /// While a graph is watched, a tev that was closed is no reason to end.
@@ -175,11 +175,12 @@ ExitCode end_at_once(const Preparation& run, RunLog& log) {
   const ExitCode code = !run.checkpoints || tell_past_failures(*run.checkpoints) ? kOk : kFramesFailed;
   const std::vector<FrameReport> none;
   log.end(RunOutcome{.job = run.job, .results = run.results, .reports = none}, code);
-  return code;
+  return log.ok() || code != kOk ? code : kInternal;
 }
 
 ExitCode run_logged(const RunArguments& arguments, RunLog& log, Console& console, Watch* watch = nullptr) {
   Preparation run = prepare(arguments, watch);
+  if (run.checkpoints) log.resume(run.checkpoints->past);
   if (run.job.frames.empty()) return end_at_once(run, log);
   const SessionOptions& options = run.options;
   const int threads = options.threads > 0 ? options.threads : available_threads();
@@ -200,9 +201,7 @@ ExitCode run_logged(const RunArguments& arguments, RunLog& log, Console& console
   const ExitCode code = compute(run, trace, log, console, watch);
   run.measuring.reset();  // with the images that it holds
   if (watch) watch->last = std::move(run);
-  if (log.ok()) return code;
-  spdlog::error("--log-json: {} could not be written", arguments.log_json->string());
-  return code == kOk ? kInternal : code;
+  return code;
 }
 
 /// Runs, and again whenever the graph is saved, until a signal comes: between runs that is a good end.
@@ -237,7 +236,7 @@ ExitCode run(RunArguments arguments, Console& console) {
   complete(arguments);
   set_verbosity(arguments.verbosity.verbosity());
   pin_isa(arguments.isa);
-  RunLog log(arguments.dry_run ? std::nullopt : arguments.log_json);
+  RunLog log(arguments.dry_run ? RunLogFiles() : arguments.logs);
   try {
     return arguments.watch ? run_watching(arguments, log, console) : run_logged(arguments, log, console);
   } catch (const Error& error) {

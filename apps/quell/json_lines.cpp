@@ -11,10 +11,7 @@
 #include "quell/text/json.h"
 
 namespace quell::app {
-namespace {
-
-/// "2024-05-01T12:30:00.250Z"
-std::string time_now() {
+std::string utc_time() {
   using namespace std::chrono;
   const auto now = floor<milliseconds>(system_clock::now());
   const std::time_t seconds = system_clock::to_time_t(floor<std::chrono::seconds>(now));
@@ -25,8 +22,6 @@ std::string time_now() {
   std::snprintf(fraction.data(), fraction.size(), ".%03dZ", static_cast<int>(now.time_since_epoch().count() % 1000));
   return std::string(date.data()) + fraction.data();
 }
-
-}  // namespace
 
 JsonObject& JsonObject::raw(std::string_view key, std::string_view json) {
   if (!members_.empty()) members_ += ',';
@@ -70,7 +65,7 @@ JsonLines::JsonLines(const std::filesystem::path& file, const char* option) : st
 
 void JsonLines::write(std::string_view event, const JsonObject& members) {
   const std::scoped_lock lock(mutex_);  // also for the time, so that lines stand in its order
-  const std::string line = JsonObject().text("event", event).text("time", time_now()).members() +
+  const std::string line = JsonObject().text("event", event).text("time", utc_time()).members() +
                            (members.members().empty() ? "" : "," + members.members());
   stream_ << "{" << line << "}" << std::endl;
   if (!stream_) failed_ = true;

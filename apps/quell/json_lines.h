@@ -12,6 +12,9 @@
 
 namespace quell::app {
 
+/// Now, as "2024-05-01T12:30:00.250Z".
+std::string utc_time();
+
 /// A JSON object, written member by member.
 class JsonObject {
  public:

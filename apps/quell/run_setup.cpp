@@ -51,7 +51,11 @@ void add_output_options(CLI::App& app, RunArguments& arguments) {
   app.add_option("--tev", arguments.tev, "Show images in a running tev, the viewer, too, as they are finished.")
       ->type_name("HOST:PORT")
       ->group(kOutputGroup);
-  app.add_option("--log-json", arguments.log_json, "Write what happens to a file, one JSON object a line, as it happens.")
+  app.add_option("--log-json", arguments.logs.lines, "Write what happens to a file, one JSON object a line, as it happens.")
+      ->type_name("FILE")
+      ->group(kOutputGroup);
+  app.add_option("--report", arguments.logs.report,
+                 "Write one JSON file about the whole run when it ends, well or not: every frame, with times, sizes and errors.")
       ->type_name("FILE")
       ->group(kOutputGroup);
   app.add_option("--trace", arguments.trace,

@@ -18,6 +18,7 @@
 #include "quell/runtime/rerun.h"
 #include "quell/runtime/session.h"
 #include "results.h"
+#include "run_log.h"
 #include "run_options.h"
 #include "run_reference.h"
 #include "tev_sink.h"
@@ -44,7 +45,8 @@ struct RunArguments {
   std::string on_missing = "auto";
   bool keep_going = false, skip_existing = false;
   std::vector<std::string> dumps;
-  std::optional<std::filesystem::path> log_json, trace;
+  RunLogFiles logs;
+  std::optional<std::filesystem::path> trace;
   std::optional<std::string> tev;
   std::optional<std::string> frames_per_second;
   bool dry_run = false, watch = false;

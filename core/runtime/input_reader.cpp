@@ -84,6 +84,7 @@ FrameInputs InputReader::take(FrameReport& report, const PlanState& state) {
     Read& read = *found->second;
     if (read.replaced > 0) report.replaced.push_back({graph_.inputs[input].name, read.item.type(), read.replaced});
     report.read_seconds += read.seconds;
+    if (read.item && is_image(read.item.type())) report.inputs.push_back({graph_.inputs[input].name, shape_of(read.item).size});
     taken.items[input] = std::move(read.item);
   }
   known_.erase(known_.begin(), known_.upper_bound({report.frame, graph_.inputs.size()}));

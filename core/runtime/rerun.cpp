@@ -118,6 +118,13 @@ std::vector<FrameReport> RerunTurn::run_session(RememberingSource& source, Remem
 
 // The report of the whole graph.
 FrameReport RerunTurn::translate(FrameReport report) const {
+  const std::vector<PlannedResult> wanted = plan_.results();
+  std::erase_if(report.inputs, [&](const ReportedSize& kept) {  // what an earlier run has kept is no input
+    return std::ranges::find(graph_->inputs, kept.name, &GraphInput::name) == graph_->inputs.end();
+  });
+  std::erase_if(report.results, [&](const ReportedSize& kept) {  // neither is what is kept for later ones a result
+    return std::ranges::find(wanted, kept.name, &PlannedResult::name) == wanted.end();
+  });
   if (report.node_seconds.size() != steps_.size()) return report;  // it could not be read
   std::vector<double> seconds(plan_.nodes.size());
   for (std::size_t i = 0; i < steps_.size(); ++i) {

@@ -18,6 +18,12 @@
 
 namespace quell {
 
+/// The size of what a frame read or handed out: an image.
+struct ReportedSize {
+  std::string name;
+  Size size;
+};
+
 /// What became of one frame.
 struct FrameReport {
   std::int64_t frame = 0;
@@ -31,6 +37,8 @@ struct FrameReport {
   double read_seconds = 0;               ///< sum over its inputs
   double write_seconds = 0;              ///< sum over its outputs
   std::vector<double> node_seconds;      ///< in the order of Plan::nodes; 0 for a node that did not run
+  std::vector<ReportedSize> inputs;      ///< of each image that was read, also when the frame failed later
+  std::vector<ReportedSize> results;     ///< of each image that was written
 };
 
 /// How run() goes through nodes and frames. The results are the same.

@@ -73,7 +73,9 @@ void write_results(FrameReport& report, const Lane& lane, const Wiring& wiring, 
     const std::string& name = wiring.results[i].first;
     const auto start = Trace::Clock::now();
     try {
-      sink.write(name, report.frame, lane.result(i));
+      const Item& item = lane.result(i);
+      sink.write(name, report.frame, item);
+      if (item && is_image(item.type())) report.results.push_back({name, shape_of(item).size});
     } catch (...) {
       report.ok = false;
       report.error = what_failed(pool);
