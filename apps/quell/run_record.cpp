@@ -65,7 +65,7 @@ JsonObject record_start(const Job& job, const std::vector<ResultFiles>& results,
       .number("threads", options.threads > 0 ? options.threads : available_threads())
       .text("isa", current_isa())
       .number("frames_in_flight", window.frames)
-      .number("memory_limit", window.memory)
+      .number("memory_limit", options.memory > 0 ? options.memory : window.memory)
       .text("on_error", name_of(options.on_error));
   if (!options.cuts.empty()) start.text("cuts", range_text(options.cuts));
   return start;

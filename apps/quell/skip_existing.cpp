@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <regex>
 
 #include "quell/graph/preroll.h"
 #include "quell/runtime/executor.h"
@@ -14,6 +15,12 @@ namespace fs = std::filesystem;
 namespace {
 
 using Expected = std::vector<FileAttribute>;
+
+// "color.#.exr", however the number was written: "color.####.exr", "color.%04d.exr".
+std::string without_digits(const std::string& pattern) {
+  static const std::regex kNumber("#+|%0?[0-9]*d");
+  return std::regex_replace(pattern, kNumber, "#");
+}
 
 bool looks_back(const Plan& plan) {
   return std::ranges::any_of(plan.histories, [](const PlannedHistory& kept) { return kept.frames > 0; });
@@ -125,10 +132,7 @@ std::string describe_inputs(const Job& job, const SequenceArguments& sequence, c
   const auto add = [&](const std::string& what, const std::string& value) {
     text += (text.empty() ? "" : "; ") + what + "=" + value;
   };
-  for (const InputFiles& input : job.inputs) add(input.input, fs::path(input.pattern).filename().string());
-  for (const std::string& in : sequence.in)
-    if (const std::size_t colon = in.find(':'); colon != std::string::npos && in.find('/', colon) == std::string::npos)
-      add(in.substr(0, in.find('=')) + " read", in.substr(colon + 1));
+  for (const InputFiles& input : job.inputs) add(input.input, without_digits(fs::path(input.pattern).filename().string()));
   if (sequence.window) add("window", *sequence.window);
   if (sequence.crop) add("crop", *sequence.crop);
   if (!looks_back(job.plan)) return text;

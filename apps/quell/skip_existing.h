@@ -11,7 +11,7 @@
 namespace quell::app {
 
 /// What a frame's results depend on beside the graph, for the header of its files ("quell:inputs"): names of files without their
-/// folders, what was said of how to read them, cuts, and, where history counts, the frame that it begins with.
+/// folders, the part of the images that is read, cuts, and, where history counts, the frame that it begins with.
 std::string describe_inputs(const Job& job, const SequenceArguments& sequence, const SessionOptions& options,
                             const Surroundings& around);
 

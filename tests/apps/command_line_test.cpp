@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         WrongLine{{"rum"},
                   "error: there is no command 'rum'; did you mean 'run'?; the commands are 'run', 'check', 'inspect', 'compare', "
-                  "'graph', 'passes', 'schema', 'tune', 'report' and 'new'\n"
+                  "'graph', 'passes', 'plan', 'schema', 'tune', 'report' and 'new'\n"
                   "`quell --help` tells more"},
         WrongLine{{"--vesion"}, "error: there is no option '--vesion'; did you mean '--version'?\n`quell --help` tells more"},
         WrongLine{{"new", "pas"},
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongLine{{"run", "g", "s", "-o", "x", "--executor", "tbbb"},
                   "error: --executor: 'tbbb' is not possible; did you mean 'tbb'?; choose 'serial' or 'tbb'"},
         WrongLine{{"run", "g", "s", "-o", "x", "--on-error", "ignore"},
-                  "error: --on-error: 'ignore' is not possible; choose 'continue' or 'stop'"},
+                  "error: --on-error: 'ignore' is not possible; choose 'continue', 'stop', 'reset' or 'hold'"},
         WrongLine{{"run", "g", "s", "-o", "x", "--log-json", ""}, "error: --log-json: the name is empty; name a file"},
         WrongLine{{"run", "g", "s", "-o", "x", "--type", "hlaf"},
                   "error: --type: 'hlaf' is not possible; did you mean 'half'?; choose 'auto', 'half' or 'float'"},

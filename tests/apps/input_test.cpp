@@ -100,7 +100,8 @@ TEST_F(Input, FramesAskedForThatAreMissingAreNamed) {
   const Outcome outcome = run({"run", make_graph(), text("shot"), "-o", text("out"), "--frames", "2-4", "-q"});
   EXPECT_EQ(outcome.code, 3);
   EXPECT_EQ(outcome.err, "error: " + text("shot") + ": files of the frames asked for are missing:\n  frame 3, color: " +
-                             text("shot/color.0003.exr") + "\n  frame 4, color: " + text("shot/color.0004.exr") + "\n");
+                             text("shot/color.0003.exr") + "\n  frame 4, color: " + text("shot/color.0004.exr") +
+                             "\n--on-missing hold or reset, or --keep-going, computes the others\n");
   EXPECT_FALSE(std::filesystem::exists(path("out")));
 }
 

@@ -34,17 +34,17 @@ TEST(LoadPlugin, TakesAnOlderMinorInterface) {
 
 TEST(LoadPlugin, RefusesANewerMinorInterface) {
   EXPECT_EQ(load_report(test_plugin("newer_minor")).error,
-            "built for plugin interface 1.3, this quell supports up to 1.1; rebuild the plugin or update quell");
+            "built for plugin interface 1.3, this quell supports up to 1.2; rebuild the plugin or update quell");
 }
 
 TEST(LoadPlugin, RefusesANewerMajorInterface) {
   EXPECT_EQ(load_report(test_plugin("newer_major")).error,
-            "built for plugin interface 2.0, this quell supports up to 1.1; rebuild the plugin or update quell");
+            "built for plugin interface 2.0, this quell supports up to 1.2; rebuild the plugin or update quell");
 }
 
 TEST(LoadPlugin, RefusesAnOlderMajorInterface) {
   EXPECT_EQ(load_report(test_plugin("older_major")).error,
-            "built for plugin interface 0.9, this quell supports 1.0 to 1.1; rebuild the plugin");
+            "built for plugin interface 0.9, this quell supports 1.0 to 1.2; rebuild the plugin");
 }
 
 TEST(LoadPlugin, NamesTheSymbolThatIsMissing) {
