@@ -18,6 +18,7 @@ struct Command {
 };
 
 Command add_run(CLI::App& program);
+Command add_batch(CLI::App& program);
 Command add_check(CLI::App& program);
 Command add_compare(CLI::App& program);
 Command add_graph(CLI::App& program);

@@ -32,9 +32,9 @@ void describe_program(CLI::App& program) {
 ExitCode run_program(int argc, char** argv, Console& console) {
   CLI::App program("", "quell");
   describe_program(program);
-  const std::vector<Command> commands = {add_run(program),   add_check(program),  add_inspect(program), add_compare(program),
-                                         add_graph(program), add_passes(program), add_plan(program),    add_schema(program),
-                                         add_tune(program),  add_report(program), add_new(program)};
+  const std::vector<Command> commands = {add_run(program),     add_batch(program), add_check(program),  add_inspect(program),
+                                         add_compare(program), add_graph(program), add_passes(program), add_plan(program),
+                                         add_schema(program),  add_tune(program),  add_report(program), add_new(program)};
   for (const Command& command : commands) command.options->get_option("--help")->group(kOtherGroup);
   try {
     program.parse(argc, argv);

@@ -24,7 +24,7 @@ TEST_F(CommandLine, WithoutArgumentsGivesAShortHelp) {
 
 TEST_F(CommandLine, HelpFitsTheTerminalAndHasAnExample) {
   for (const std::string command :
-       {"run", "check", "compare", "graph", "passes", "report", "plan", "new", "new pass", "new graph"}) {
+       {"run", "batch", "check", "compare", "graph", "passes", "report", "plan", "new", "new pass", "new graph"}) {
     std::istringstream words(command + " --help");
     const Outcome outcome = quell({std::istream_iterator<std::string>(words), {}});
     EXPECT_EQ(outcome.code, 0) << command;
@@ -62,7 +62,8 @@ INSTANTIATE_TEST_SUITE_P(
     All, WrongCommandLine,
     ::testing::Values(
         WrongLine{{"rum"},
-                  "error: there is no command 'rum'; did you mean 'run'?; the commands are 'run', 'check', 'inspect', 'compare', "
+                  "error: there is no command 'rum'; did you mean 'run'?; the commands are 'run', 'batch', 'check', 'inspect', "
+                  "'compare', "
                   "'graph', 'passes', 'plan', 'schema', 'tune', 'report' and 'new'\n"
                   "`quell --help` tells more"},
         WrongLine{{"--vesion"}, "error: there is no option '--vesion'; did you mean '--version'?\n`quell --help` tells more"},

@@ -33,7 +33,8 @@ const std::map<std::string, Names, std::less<>> kThirdParty = {
     {"tbb", {"core/runtime"}},    {"oneapi", {"core/runtime"}},
     {"OpenColorIO", {"passes"}},  {"hwy", {"passes", "core/metrics", "core/simd"}},
     {"spdlog", {"apps"}},         {"CLI", {"apps"}},
-    {"xxhash.h", {"core/graph"}}, {"gtest", {"core/testing"}},
+    {"xxhash.h", {"core/graph"}}, {"malloc.h", {"apps"}},
+    {"sys/prctl.h", {"apps"}},    {"gtest", {"core/testing"}},
     {"gmock", {"core/testing"}},  {"xmmintrin.h", {"core/runtime"}},
     {"nlopt.hpp", {"apps"}},      {"zlib.h", {"apps"}},
 };
