@@ -33,17 +33,16 @@ const std::map<std::string, Names, std::less<>> kThirdParty = {
     {"tbb", {"core/runtime"}},    {"oneapi", {"core/runtime"}},
     {"OpenColorIO", {"passes"}},  {"hwy", {"passes", "core/metrics", "core/simd"}},
     {"spdlog", {"apps"}},         {"CLI", {"apps"}},
-    {"xxhash.h", {"core/graph"}}, {"malloc.h", {"apps"}},
-    {"sys/prctl.h", {"apps"}},    {"gtest", {"core/testing"}},
+    {"xxhash.h", {"core/graph"}}, {"gtest", {"core/testing"}},
     {"gmock", {"core/testing"}},  {"xmmintrin.h", {"core/runtime"}},
     {"nlopt.hpp", {"apps"}},      {"zlib.h", {"apps"}},
 };
 
 // The operating system's headers. The SDK and the passes do without.
-const Names kSystem = {"dlfcn.h",    "elf.h",          "fcntl.h",       "link.h",        "netdb.h",
-                       "poll.h",     "sched.h",        "sys/socket.h",  "sys/time.h",    "signal.h",
-                       "spawn.h",    "unistd.h",       "sys/eventfd.h", "sys/inotify.h", "sys/ioctl.h",
-                       "sys/mman.h", "sys/resource.h", "sys/stat.h",    "sys/types.h",   "sys/wait.h"};
+const Names kSystem = {"malloc.h",   "sys/prctl.h",    "sys/signalfd.h", "dlfcn.h",       "elf.h",         "fcntl.h",
+                       "link.h",     "netdb.h",        "poll.h",         "sched.h",       "sys/socket.h",  "sys/time.h",
+                       "signal.h",   "spawn.h",        "unistd.h",       "sys/eventfd.h", "sys/inotify.h", "sys/ioctl.h",
+                       "sys/mman.h", "sys/resource.h", "sys/stat.h",     "sys/types.h",   "sys/wait.h"};
 const Names kCHeaders = {"stddef.h", "stdint.h"};  // abi.h is C
 
 /// "core/graph" for core/graph/plan.cpp, "passes" and "apps" for all that lies below these.
