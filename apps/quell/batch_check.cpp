@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <functional>
 
-#include "arguments.h"
 #include "checkpointed_run.h"
 #include "graph_files.h"
 #include "output_options.h"

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "arguments.h"
 #include "batch_list.h"
 #include "quell/plugin/registry.h"
 
@@ -19,7 +20,7 @@ class BatchCheck {
   void check(const Shot& shot);
 
  private:
-  std::string wrong_in_graph(const struct GraphArguments& arguments);
+  std::string wrong_in_graph(const GraphArguments& arguments);
 
   Diagnostics& errors_;
   std::map<std::vector<std::filesystem::path>, Registry> passes_;  // by --plugin-path

@@ -37,6 +37,14 @@ class BatchTest : public RunnerTest {
     words.insert(words.end(), options.begin(), options.end());
     return quell(words);
   }
+  /// Until a file of the logs holds the text; a minute is for a busy machine.
+  void wait_for(const std::string& log, const std::string& text) const {
+    for (int i = 0; i < 12'000; ++i) {
+      if (read_file(path("list.logs/" + log)).find(text) != std::string::npos) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    FAIL() << log << " never held " << text;
+  }
   /// The line of the table that begins with the name.
   static std::string line_of(const Outcome& outcome, const std::string& name) {
     std::istringstream lines(outcome.out);
@@ -159,8 +167,7 @@ TEST_F(BatchTest, ASignalIsPassedOn) {
   for (const int signal : {SIGINT, SIGTERM}) {
     Program program({"batch", text("list.json"), "--threads", "1"});
     ASSERT_TRUE(program.wait_for_error_text("a: begun"));
-    while (read_file(path("list.logs/a.log")).find("waiting") == std::string::npos)
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    wait_for("a.log", "waiting");
     program.send(signal);
     const Outcome outcome = program.finish();
     EXPECT_EQ(outcome.code, 75);
@@ -176,14 +183,24 @@ TEST_F(BatchTest, ASecondSignalKills) {
   make_list(R"({ "a": { "set": ["scale.wait_from=1", "scale.stubborn=true"] } })");
   Program program({"batch", text("list.json"), "--threads", "1"});
   ASSERT_TRUE(program.wait_for_error_text("a: begun"));
-  while (read_file(path("list.logs/a.log")).find("waiting") == std::string::npos)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  wait_for("a.log", "waiting");
   program.send(SIGINT);
   ASSERT_TRUE(program.wait_for_error_text("stopping"));
   program.send(SIGINT);
   const Outcome outcome = program.finish();
   EXPECT_EQ(outcome.code, 75);
   EXPECT_THAT(line_of(outcome, "a"), HasSubstr("killed by signal 9"));
+}
+
+TEST_F(BatchTest, ItsShotsEndWithItWhenItIsKilled) {
+  make_shot(2);
+  make_list(R"({ "a": { "set": "scale.wait_from=1" } })");
+  Program program({"batch", text("list.json"), "--threads", "1"});
+  ASSERT_TRUE(program.wait_for_error_text("a: begun"));
+  wait_for("a.log", "waiting");
+  program.send(SIGKILL);
+  EXPECT_EQ(program.finish().code, 128 + SIGKILL);
+  wait_for("a.json", R"("outcome":"interrupted")");
 }
 
 TEST_F(BatchTest, ResumesWithWhatIsNotDone) {
